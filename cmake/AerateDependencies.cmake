@@ -1,0 +1,22 @@
+# Everything comes from the system's packages; scripts/install-dependencies names them for Debian.
+
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(assimp REQUIRED)
+find_package(CGAL 5.5 REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(lib3mf REQUIRED IMPORTED_TARGET lib3MF)
+
+# Debian keeps OpenVDB's find module beside the library instead of on CMake's path.
+if(NOT OpenVDB_FOUND)
+  list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+  find_package(OpenVDB REQUIRED)
+endif()
+
+if(AERATE_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+endif()

@@ -1,0 +1,28 @@
+# What every target of the project is compiled with, as an interface target: no global flags.
+
+find_program(AERATE_CCACHE ccache)
+if(AERATE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${AERATE_CCACHE}")
+endif()
+
+add_library(aerate_options INTERFACE)
+target_compile_features(aerate_options INTERFACE cxx_std_20)
+set_target_properties(aerate_options PROPERTIES CXX_EXTENSIONS OFF)
+target_include_directories(aerate_options INTERFACE
+  "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/src")
+
+# No contraction of a*b+c: the CPU and CUDA executors must give the same bytes (docs/design.md).
+target_compile_options(aerate_options INTERFACE
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+    -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion>)
+
+if(AERATE_SANITIZE)
+  target_compile_options(aerate_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_link_options(aerate_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# aerate_add_library(NAME sources...): a static library of the project with its common options.
+function(aerate_add_library name)
+  add_library(${name} STATIC ${ARGN})
+  target_link_libraries(${name} PUBLIC aerate_options)
+endfunction()

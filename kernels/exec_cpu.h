@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <utility>
+#include <vector>
+
+#include "kernels/view.h"
+
+// The executors that run kernels on the CPU. An executor is a value with
+//
+//   Buffer<T> allocate<T>(n)             uninitialised memory; RAII, movable
+//   Buffer<T> upload(span<const T>)      copy from the host
+//   vector<T> download(View<const T>)    copy to the host
+//   for_each_index(n, f)                 f(i) for every i < n, in any order; f is a functor of views and
+//   values exclusive_scan(in, out)              out[i] = in[0] + ... + in[i-1] (64 bit); returns the sum of
+//   all sort_pairs(keys, values)             both by (key, value) ascending
+//
+// and nothing else, so that one template over the executor is the algorithm for every processor, and every
+// executor gives the same bytes (exec_cuda.h has the CUDA one).
+
+namespace aerate::kernels {
+
+// Host memory that is not zeroed when it is allocated.
+template <typename T>
+class HostBuffer {
+ public:
+  HostBuffer() = default;
+  explicit HostBuffer(std::size_t size) : data_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+
+  View<T> view() { return {data_.get(), size_}; }
+  View<const T> view() const { return {data_.get(), size_}; }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::unique_ptr<T[]> data_;
+  std::size_t size_ = 0;
+};
+
+// What the CPU executors share: memory is the host's.
+class HostMemory {
+ public:
+  template <typename T>
+  using Buffer = HostBuffer<T>;
+
+  template <typename T>
+  HostBuffer<T> allocate(std::size_t size) const {
+    return HostBuffer<T>(size);
+  }
+
+  template <typename T>
+  HostBuffer<T> upload(std::span<const T> source) const {
+    HostBuffer<T> buffer(source.size());
+    std::copy(source.begin(), source.end(), buffer.view().data);
+    return buffer;
+  }
+
+  template <typename T>
+  std::vector<std::remove_const_t<T>> download(View<T> source) const {
+    return {source.data, source.data + source.size};
+  }
+};
+
+// One thread, in index order: the reference the others are tested against.
+class SerialExecutor : public HostMemory {
+ public:
+  template <typename F>
+  void for_each_index(std::size_t count, F f) const {
+    for (std::size_t i = 0; i < count; ++i) f(i);
+  }
+
+  std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const;
+  void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
+};
+
+// All threads of the current oneTBB arena.
+class TbbExecutor : public HostMemory {
+ public:
+  template <typename F>
+  void for_each_index(std::size_t count, F f) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
+                      [f](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+                      });
+  }
+
+  std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const;
+  void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
+
+ private:
+  static constexpr std::size_t kGrain = 64;
+};
+
+}  // namespace aerate::kernels

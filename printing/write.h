@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/mesh.h"
+
+namespace aerate {
+
+enum class MeshFormat { stl, obj, ply };
+
+// From the file name's ending (any case). Throws UsageError for one that cannot be written.
+MeshFormat mesh_format_of(const std::filesystem::path& path);
+
+// A file being written beside its target, under a temporary name in the same folder. It becomes the target
+// only by `commit`; otherwise the destructor removes it. Throws FailureError if it cannot be created.
+class PendingFile {
+ public:
+  explicit PendingFile(std::filesystem::path target);
+  ~PendingFile();
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }  // where to write
+  void commit();  // flushes to disk and renames onto the target, atomically
+
+ private:
+  std::filesystem::path target_, path_;
+  bool committed_ = false;
+};
+
+// Writes binary STL (true unit facet normals; (0, 0, 1) for a triangle without area, since some slicers
+// refuse zero normals), OBJ (shortest decimal form that reads back to the same fp32) or binary little-endian
+// PLY. Throws FailureError with the system's reason (disk full, ...).
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, MeshFormat format);
+
+}  // namespace aerate

@@ -1,0 +1,55 @@
+#include "core/mesh.h"
+
+#include <limits>
+
+namespace aerate {
+
+Box3f bounding_box(const Mesh& mesh) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box3f box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      box.lower = min_of(box.lower, mesh.positions[vertex]);
+      box.upper = max_of(box.upper, mesh.positions[vertex]);
+    }
+  }
+  return box;
+}
+
+VolumeMoments volume_moments(const Mesh& mesh) {
+  if (mesh.triangles.empty()) return {};
+  // Tetrahedra from the box centre rather than from the origin: a model far from the origin keeps its digits.
+  const Box3f box = bounding_box(mesh);
+  const Vec3d origin = (to_double(box.lower) + to_double(box.upper)) * 0.5;
+  double volume_times_6 = 0;
+  Vec3d moment_times_24{0, 0, 0};
+  for (const Triangle& triangle : mesh.triangles) {
+    const Vec3d a = to_double(mesh.positions[triangle[0]]) - origin;
+    const Vec3d b = to_double(mesh.positions[triangle[1]]) - origin;
+    const Vec3d c = to_double(mesh.positions[triangle[2]]) - origin;
+    const double determinant = dot(a, cross(b, c));
+    volume_times_6 += determinant;
+    moment_times_24 = moment_times_24 + (a + b + c) * determinant;
+  }
+  VolumeMoments moments;
+  moments.volume = volume_times_6 / 6.0;
+  moments.first_moment = moment_times_24 * (1.0 / 24.0) + origin * moments.volume;
+  return moments;
+}
+
+double signed_volume(const Mesh& mesh) {
+  return volume_moments(mesh).volume;
+}
+
+double surface_area(const Mesh& mesh) {
+  double area_times_2 = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const Vec3d a = to_double(mesh.positions[triangle[0]]);
+    const Vec3d b = to_double(mesh.positions[triangle[1]]);
+    const Vec3d c = to_double(mesh.positions[triangle[2]]);
+    area_times_2 += length(cross(b - a, c - a));
+  }
+  return area_times_2 / 2.0;
+}
+
+}  // namespace aerate

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/vec.h"
+
+namespace aerate {
+
+// Vertex indices of a triangle, counter-clockwise seen from outside the solid.
+using Triangle = std::array<std::uint32_t, 3>;
+
+// An indexed triangle mesh, the value every stage passes on.
+//   positions: n x 3, millimetres, fp32 exactly as read (or as converted once from the file's unit)
+//   triangles: m x 3, indices into positions
+struct Mesh {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+};
+
+// Smallest box around the positions that triangles use; empty (lower > upper) for a mesh without triangles.
+Box3f bounding_box(const Mesh& mesh);
+
+// Signed volume in mm3 (divergence theorem, fp64, relative to the box centre): each triangle's contribution
+// is summed in index order, so the result does not depend on threads. Positive for outward orientation.
+double signed_volume(const Mesh& mesh);
+
+// Surface area in mm2.
+double surface_area(const Mesh& mesh);
+
+// Volume, and the volume integral of position (mm4): centroid = first_moment / volume. Moments of several
+// closed meshes add up.
+struct VolumeMoments {
+  double volume = 0;
+  Vec3d first_moment{0, 0, 0};
+};
+VolumeMoments volume_moments(const Mesh& mesh);
+
+}  // namespace aerate

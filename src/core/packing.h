@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/sphere.h"
+
+namespace aerate {
+
+// What the spheres of a packing must obey; millimetres.
+struct PackingLimits {
+  double wall = 0;        // least distance between a sphere and the model's surface
+  double gap = 0;         // least distance between two spheres
+  double min_radius = 0;  // smaller spheres are dropped
+  double max_radius = 0;  // radius of the largest sphere
+};
+
+// Why candidates of a packing were not kept; each candidate is counted once.
+struct PackingStatistics {
+  std::size_t candidates = 0;
+  std::size_t outside = 0;            // winding number at the centre is 0
+  std::size_t overlapped_region = 0;  // winding number is neither 0 nor 1: slicers would fill a void there
+  std::size_t near_surface = 0;       // nearer to the surface than radius + wall
+  std::size_t below_min_radius = 0;   // would fit, but is smaller than min_radius
+  std::size_t shrunk_by_verification = 0;
+  std::size_t dropped_by_verification = 0;
+  std::size_t index_bytes = 0;  // memory of the triangle index
+};
+
+// Disjoint spheres inside a model, in the model's own coordinates, with the limits they were packed under.
+struct Packing {
+  std::vector<Sphere> spheres;
+  PackingLimits limits;
+  PackingStatistics statistics;
+};
+
+// Sum of the spheres' volumes, mm3.
+double total_volume(const Packing& packing);
+
+}  // namespace aerate
