@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -74,6 +75,7 @@ class SerialExecutor : public HostMemory {
     for (std::size_t i = 0; i < count; ++i) f(i);
   }
 
+  std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const;
   std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const;
   void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
 };
@@ -89,6 +91,7 @@ class TbbExecutor : public HostMemory {
                       });
   }
 
+  std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const;
   std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const;
   void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+
+#include "kernels/annotations.h"
+
+#if !defined(__CUDA_ARCH__)
+#include <atomic>
+#endif
+
+namespace aerate::kernels {
+
+// Adds to a counter that several threads share and returns its value before. Integers only: the sum does not
+// depend on the order (what is done with the returned values must not either).
+AERATE_HD inline std::uint32_t atomic_add(std::uint32_t& counter, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(&counter, value);
+#else
+  return std::atomic_ref<std::uint32_t>(counter).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
+}  // namespace aerate::kernels

@@ -1,0 +1,223 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "kernels/atomic.h"
+#include "kernels/facet.h"
+#include "kernels/vec.h"
+#include "kernels/view.h"
+
+// Winding numbers of points, by a signed count of the facets that a ray in +z crosses. Facets are indexed by
+// the cells of a grid in the xy plane (CSR), so that a query reads one cell, and meets each facet once.
+
+namespace aerate::kernels {
+
+namespace winding_detail {
+
+// Which side of the line a -> b the point lies on, in the xy plane. Computed in one canonical direction for
+// both triangles at an edge, so that rounding cannot let a ray slip between them or hit both.
+AERATE_HD inline bool is_left_of(Vec3d a, Vec3d b, double x, double y) {
+  const bool swapped = b.x < a.x || (b.x == a.x && b.y < a.y);
+  const Vec3d low = swapped ? b : a;
+  const Vec3d high = swapped ? a : b;
+  const bool left = (high.x - low.x) * (y - low.y) - (high.y - low.y) * (x - low.x) >= 0;
+  return left != swapped;
+}
+
+// Contribution of a projected edge to the 2-D winding number of (x, y): half-open in y, so that a vertex
+// belongs to one of its edges only.
+AERATE_HD inline int edge_crossing(Vec3d a, Vec3d b, double x, double y) {
+  const bool a_below = a.y <= y;
+  const bool b_below = b.y <= y;
+  if (a_below == b_below) return 0;
+  const bool left = is_left_of(a, b, x, y);
+  if (a_below) return left ? 1 : 0;
+  return left ? 0 : -1;
+}
+
+// +1 or -1 if the ray from p in +z leaves or enters the solid through the facet, else 0.
+AERATE_HD inline int facet_crossing(const Facet& facet, Vec3d p) {
+  const Vec3d a = to_double(facet.a);
+  const Vec3d b = to_double(facet.b);
+  const Vec3d c = to_double(facet.c);
+  const int sign =
+      edge_crossing(a, b, p.x, p.y) + edge_crossing(b, c, p.x, p.y) + edge_crossing(c, a, p.x, p.y);
+  if (sign == 0) return 0;
+  const double height_above = dot(cross(b - a, c - a), p - a);
+  return (sign > 0 ? height_above < 0 : height_above > 0) ? sign : 0;
+}
+
+}  // namespace winding_detail
+
+// Grid of columns along z. `cell_of` is monotone, so a point that lies within a facet's bounds falls into one
+// of the cells the facet was entered in.
+struct ColumnGrid {
+  double origin_x = 0, origin_y = 0;
+  double cells_per_mm = 1;
+  std::uint32_t count_x = 1, count_y = 1;
+
+  AERATE_HD static std::uint32_t cell_of(double distance, double cells_per_mm, std::uint32_t count) {
+    const double cell = distance * cells_per_mm;
+    if (!(cell > 0)) return 0;
+    return cell >= static_cast<double>(count) ? count - 1 : static_cast<std::uint32_t>(cell);
+  }
+  AERATE_HD std::uint32_t cell_x(double x) const { return cell_of(x - origin_x, cells_per_mm, count_x); }
+  AERATE_HD std::uint32_t cell_y(double y) const { return cell_of(y - origin_y, cells_per_mm, count_y); }
+  AERATE_HD std::size_t cell(std::uint32_t x, std::uint32_t y) const {
+    return static_cast<std::size_t>(y) * count_x + x;
+  }
+};
+
+// What a kernel needs to ask for winding numbers.
+struct WindingView {
+  ColumnGrid grid;
+  Box3d box{};  // of all facets
+  View<const Facet> facets;
+  View<const std::uint32_t> offsets;     // cells + 1
+  View<const std::uint32_t> references;  // facet indices, cell by cell
+
+  // 1 inside a plain solid, 0 outside; 2 where two parts overlap. Meaningful for a closed mesh. A point on
+  // the surface gets the number of one side or the other.
+  AERATE_HD int winding_number(Vec3d p) const {
+    if (!(p.x >= box.lower.x && p.x <= box.upper.x && p.y >= box.lower.y && p.y <= box.upper.y &&
+          p.z >= box.lower.z && p.z <= box.upper.z)) {
+      return 0;
+    }
+    const std::size_t cell = grid.cell(grid.cell_x(p.x), grid.cell_y(p.y));
+    int winding = 0;
+    for (std::uint32_t i = offsets[cell]; i < offsets[cell + 1]; ++i) {
+      winding += winding_detail::facet_crossing(facets[references[i]], p);
+    }
+    return winding;
+  }
+};
+
+namespace winding_detail {
+
+struct FacetColumns {
+  std::uint32_t x0, x1, y0, y1;
+
+  AERATE_HD FacetColumns(const ColumnGrid& grid, const Facet& f)
+      : x0(grid.cell_x(static_cast<double>(min_of(f.a.x, min_of(f.b.x, f.c.x))))),
+        x1(grid.cell_x(static_cast<double>(max_of(f.a.x, max_of(f.b.x, f.c.x))))),
+        y0(grid.cell_y(static_cast<double>(min_of(f.a.y, min_of(f.b.y, f.c.y))))),
+        y1(grid.cell_y(static_cast<double>(max_of(f.a.y, max_of(f.b.y, f.c.y))))) {}
+};
+
+struct CountReferences {
+  ColumnGrid grid;
+  View<const Facet> facets;
+  View<std::uint32_t> counts;
+
+  AERATE_HD void operator()(std::size_t i) const {
+    const FacetColumns columns(grid, facets[i]);
+    for (std::uint32_t y = columns.y0; y <= columns.y1; ++y) {
+      for (std::uint32_t x = columns.x0; x <= columns.x1; ++x) atomic_add(counts[grid.cell(x, y)], 1);
+    }
+  }
+};
+
+// Fills each cell from its end towards its start; `ends` becomes the offsets. The order inside a cell depends
+// on timing, which no query can see: it adds integers.
+struct FillReferences {
+  ColumnGrid grid;
+  View<const Facet> facets;
+  View<std::uint32_t> remaining;
+  View<const std::uint32_t> offsets;
+  View<std::uint32_t> references;
+
+  AERATE_HD void operator()(std::size_t i) const {
+    const FacetColumns columns(grid, facets[i]);
+    for (std::uint32_t y = columns.y0; y <= columns.y1; ++y) {
+      for (std::uint32_t x = columns.x0; x <= columns.x1; ++x) {
+        const std::size_t cell = grid.cell(x, y);
+        const std::uint32_t slot = atomic_add(remaining[cell], ~std::uint32_t{0}) - 1;
+        references[offsets[cell] + slot] = static_cast<std::uint32_t>(i);
+      }
+    }
+  }
+};
+
+}  // namespace winding_detail
+
+template <typename T>
+struct SetAll {
+  View<T> values;
+  T value;
+
+  AERATE_HD void operator()(std::size_t i) const { values[i] = value; }
+};
+
+template <typename Executor>
+struct WindingIndex {
+  typename Executor::template Buffer<std::uint32_t> offsets, references;
+  WindingView view;
+
+  std::size_t bytes() const { return (offsets.size() + references.size()) * sizeof(std::uint32_t); }
+};
+
+// Indexes facets, which must stay alive beside the index. About one column for each facet: references grow
+// linearly with the facets as long as these are not much longer than wide. O(facets + cells).
+// Throws std::length_error for more than 2^32 - 1 references.
+template <typename Executor>
+WindingIndex<Executor> build_winding_index(const Executor& executor, View<const Facet> facets,
+                                           const Box3d& box) {
+  ColumnGrid grid;
+  grid.origin_x = box.lower.x;
+  grid.origin_y = box.lower.y;
+  const double width = max_of(box.upper.x - box.lower.x, 0.0);
+  const double depth = max_of(box.upper.y - box.lower.y, 0.0);
+  const double longest = max_of(width, depth);
+  if (longest > 0) {
+    const double wanted_cells = max_of(1.0, static_cast<double>(facets.size));
+    // A narrow box is given its long side's resolution only, so that the number of cells stays bounded.
+    const double cell = max_of(std::sqrt(width * depth / wanted_cells), longest / wanted_cells);
+    grid.cells_per_mm = 1.0 / cell;
+    grid.count_x = static_cast<std::uint32_t>(width / cell) + 1;
+    grid.count_y = static_cast<std::uint32_t>(depth / cell) + 1;
+  }
+  const std::size_t cells = static_cast<std::size_t>(grid.count_x) * grid.count_y;
+
+  auto counts = executor.template allocate<std::uint32_t>(cells + 1);
+  executor.for_each_index(cells + 1, SetAll<std::uint32_t>{counts.view(), 0});
+  executor.for_each_index(facets.size, winding_detail::CountReferences{grid, facets, counts.view()});
+
+  WindingIndex<Executor> index;
+  index.offsets = executor.template allocate<std::uint32_t>(cells + 1);
+  const std::uint64_t total = executor.exclusive_scan(counts.view(), index.offsets.view());
+  if (total > 0xffffffffu) throw std::length_error("winding index: more than 2^32 - 1 references");
+  index.references = executor.template allocate<std::uint32_t>(total);
+  executor.for_each_index(facets.size,
+                          winding_detail::FillReferences{grid, facets, counts.view(), index.offsets.view(),
+                                                         index.references.view()});
+  index.view = {grid, box, facets, index.offsets.view(), index.references.view()};
+  return index;
+}
+
+// Box of facets in host memory; empty (lower > upper) without any.
+Box3d bounding_box(View<const Facet> facets);
+
+// Winding numbers of many points with respect to one mesh, on all CPU threads, for host code.
+class HostWinding {
+ public:
+  HostWinding(std::span<const Vec3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
+  ~HostWinding();
+  HostWinding(HostWinding&&) noexcept;
+  HostWinding& operator=(HostWinding&&) noexcept;
+
+  // For use in the caller's own loops; valid while this object lives.
+  const WindingView& view() const;
+  std::vector<int> winding_numbers(std::span<const Vec3d> points) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace aerate::kernels
