@@ -16,9 +16,9 @@ AERATE_HD inline double distance_squared_to_segment(Vec3d p, Vec3d a, Vec3d b) {
   return length_squared(ap - ab * (along / ab_squared));
 }
 
-// Squared distance from p to a triangle, mm2. Slivers and triangles without area are as good as any other: the
-// plane is used only where p projects inside all three edges, otherwise the nearest point lies on an edge that
-// p is outside of.
+// Squared distance from p to a triangle, mm2. Slivers and triangles without area are as good as any other:
+// the plane is used only where p projects inside all three edges, otherwise the nearest point lies on an edge
+// that p is outside of.
 AERATE_HD inline double distance_squared_to_facet(Vec3d p, const Facet& facet) {
   const Vec3d a = to_double(facet.a);
   const Vec3d b = to_double(facet.b);

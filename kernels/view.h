@@ -19,4 +19,13 @@ struct View {
   AERATE_HD operator View<const T>() const { return {data, size}; }
 };
 
+// Kernel: fills a buffer.
+template <typename T>
+struct SetAll {
+  View<T> values;
+  T value;
+
+  AERATE_HD void operator()(std::size_t i) const { values[i] = value; }
+};
+
 }  // namespace aerate::kernels

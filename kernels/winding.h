@@ -146,14 +146,6 @@ struct FillReferences {
 
 }  // namespace winding_detail
 
-template <typename T>
-struct SetAll {
-  View<T> values;
-  T value;
-
-  AERATE_HD void operator()(std::size_t i) const { values[i] = value; }
-};
-
 template <typename Executor>
 struct WindingIndex {
   typename Executor::template Buffer<std::uint32_t> offsets, references;

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
 #include "core/mesh.h"
 
 // Small exact meshes for tests.
@@ -24,6 +28,31 @@ inline Mesh join(const Mesh& a, const Mesh& b) {
   mesh.positions.insert(mesh.positions.end(), b.positions.begin(), b.positions.end());
   for (const Triangle& t : b.triangles)
     mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return mesh;
+}
+
+// A torus about the z axis; `rings` x `sides` quads, each two triangles, outward.
+inline Mesh make_torus(double ring_radius, double tube_radius, std::uint32_t rings, std::uint32_t sides) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < rings; ++i) {
+    const double u = 2 * std::numbers::pi * i / rings;
+    for (std::uint32_t j = 0; j < sides; ++j) {
+      const double v = 2 * std::numbers::pi * j / sides;
+      const double distance = ring_radius + tube_radius * std::cos(v);
+      mesh.positions.push_back(
+          to_float({distance * std::cos(u), distance * std::sin(u), tube_radius * std::sin(v)}));
+    }
+  }
+  for (std::uint32_t i = 0; i < rings; ++i) {
+    for (std::uint32_t j = 0; j < sides; ++j) {
+      const std::uint32_t next_i = (i + 1) % rings;
+      const std::uint32_t next_j = (j + 1) % sides;
+      const std::uint32_t a = i * sides + j, b = next_i * sides + j;
+      const std::uint32_t c = next_i * sides + next_j, d = i * sides + next_j;
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    }
+  }
   return mesh;
 }
 

@@ -1,0 +1,258 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+#include "kernels/atomic.h"
+#include "kernels/facet.h"
+#include "kernels/point_triangle.h"
+#include "kernels/vec.h"
+#include "kernels/view.h"
+
+// The indexed uniform grid of Cuba and Loaiza's method: which facets meet which cell. Theirs is a dense
+// matrix of cells x facets; here it is CSR (4 bytes a cell and 4 a reference), beside a summed-volume table
+// (4 bytes a cell) that tells in eight look-ups whether a box of cells holds any facet at all.
+
+namespace aerate::kernels {
+
+// Cells along x run fastest. `axis_cell` is monotone: what lies between two coordinates lies between their
+// cells.
+struct CellGrid {
+  Vec3d origin{0, 0, 0};
+  double cells_per_mm = 1;
+  double cell_size = 1;  // mm
+  std::uint32_t count_x = 1, count_y = 1, count_z = 1;
+
+  AERATE_HD static std::uint32_t axis_cell(double distance, double cells_per_mm, std::uint32_t count) {
+    const double cell = distance * cells_per_mm;
+    if (!(cell > 0)) return 0;
+    return cell >= static_cast<double>(count) ? count - 1 : static_cast<std::uint32_t>(cell);
+  }
+  AERATE_HD std::uint32_t cell_x(double x) const { return axis_cell(x - origin.x, cells_per_mm, count_x); }
+  AERATE_HD std::uint32_t cell_y(double y) const { return axis_cell(y - origin.y, cells_per_mm, count_y); }
+  AERATE_HD std::uint32_t cell_z(double z) const { return axis_cell(z - origin.z, cells_per_mm, count_z); }
+  AERATE_HD std::size_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    return (static_cast<std::size_t>(z) * count_y + y) * count_x + x;
+  }
+  AERATE_HD std::size_t cell_count() const { return static_cast<std::size_t>(count_x) * count_y * count_z; }
+};
+
+// A box of cells, bounds included.
+struct CellBox {
+  std::uint32_t x0, x1, y0, y1, z0, z1;
+
+  AERATE_HD CellBox(const CellGrid& grid, Vec3d lower, Vec3d upper)
+      : x0(grid.cell_x(lower.x)),
+        x1(grid.cell_x(upper.x)),
+        y0(grid.cell_y(lower.y)),
+        y1(grid.cell_y(upper.y)),
+        z0(grid.cell_z(lower.z)),
+        z1(grid.cell_z(upper.z)) {}
+};
+
+// What a kernel needs to ask about distances to facets.
+struct FacetGridView {
+  CellGrid grid;
+  View<const Facet> facets;
+  View<const std::uint32_t> offsets;     // cells + 1
+  View<const std::uint32_t> references;  // facet indices, cell by cell
+  View<const std::uint32_t> summed;      // references in all cells with no larger x, y and z, modulo 2^32
+
+  AERATE_HD std::uint32_t summed_below(std::uint32_t x_end, std::uint32_t y_end, std::uint32_t z_end) const {
+    if (x_end == 0 || y_end == 0 || z_end == 0) return 0;
+    return summed[grid.index(x_end - 1, y_end - 1, z_end - 1)];
+  }
+
+  AERATE_HD bool is_empty(const CellBox& box) const {
+    const std::uint32_t x1 = box.x1 + 1, y1 = box.y1 + 1, z1 = box.z1 + 1;
+    return summed_below(x1, y1, z1) - summed_below(box.x0, y1, z1) - summed_below(x1, box.y0, z1) -
+               summed_below(x1, y1, box.z0) + summed_below(box.x0, box.y0, z1) +
+               summed_below(box.x0, y1, box.z0) + summed_below(x1, box.y0, box.z0) -
+               summed_below(box.x0, box.y0, box.z0) ==
+           0;
+  }
+
+  AERATE_HD bool any_nearer(Vec3d p, double distance_squared, std::uint32_t begin, std::uint32_t end) const {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (distance_squared_to_facet(p, facets[references[i]]) < distance_squared) return true;
+    }
+    return false;
+  }
+
+  // Distance along one axis from a coordinate to a cell; 0 inside it.
+  AERATE_HD double axis_distance(double coordinate, double origin, std::uint32_t cell) const {
+    const double lower = origin + static_cast<double>(cell) * grid.cell_size;
+    const double upper = lower + grid.cell_size;
+    return max_of(max_of(lower - coordinate, coordinate - upper), 0.0);
+  }
+
+  // Is any facet nearer to p than `distance` mm?
+  AERATE_HD bool any_facet_within(Vec3d p, double distance) const {
+    const Vec3d reach{distance, distance, distance};
+    const CellBox box(grid, p - reach, p + reach);
+    if (is_empty(box)) return false;
+    const double distance_squared = distance * distance;
+    // Most spheres that are too near are found out in the centre's own cell.
+    const std::size_t own = grid.index(grid.cell_x(p.x), grid.cell_y(p.y), grid.cell_z(p.z));
+    if (any_nearer(p, distance_squared, offsets[own], offsets[own + 1])) return true;
+    // A little more than the distance, since cell bounds are rounded.
+    const double reach_squared = distance_squared * (1 + 1e-9);
+    for (std::uint32_t z = box.z0; z <= box.z1; ++z) {
+      const double dz = axis_distance(p.z, grid.origin.z, z);
+      for (std::uint32_t y = box.y0; y <= box.y1; ++y) {
+        const double dy = axis_distance(p.y, grid.origin.y, y);
+        const double left = reach_squared - dz * dz - dy * dy;
+        if (left < 0) continue;
+        // References of neighbouring cells in x are consecutive: one run for the whole row.
+        const double half_width = std::sqrt(left);
+        const std::size_t row = grid.index(0, y, z);
+        if (any_nearer(p, distance_squared, offsets[row + grid.cell_x(p.x - half_width)],
+                       offsets[row + grid.cell_x(p.x + half_width) + 1])) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+};
+
+namespace grid_detail {
+
+// The cells a facet is entered in: those of its bounding box that its plane crosses.
+template <typename Visit>
+AERATE_HD void for_each_cell(const CellGrid& grid, const Facet& facet, Visit visit) {
+  const Vec3d a = to_double(facet.a);
+  const Vec3d b = to_double(facet.b);
+  const Vec3d c = to_double(facet.c);
+  const CellBox box(grid, min_of(a, min_of(b, c)), max_of(a, max_of(b, c)));
+  const std::size_t cells =
+      static_cast<std::size_t>(box.x1 - box.x0 + 1) * (box.y1 - box.y0 + 1) * (box.z1 - box.z0 + 1);
+  const Vec3d normal = cross(b - a, c - a);
+  const Vec3d steepness{normal.x < 0 ? -normal.x : normal.x, normal.y < 0 ? -normal.y : normal.y,
+                        normal.z < 0 ? -normal.z : normal.z};
+  // Half a cell's extent along the normal, a little widened: cells are entered too often rather than too
+  // seldom.
+  const double half = 0.5 * grid.cell_size * (steepness.x + steepness.y + steepness.z) * (1 + 1e-6);
+  for (std::uint32_t z = box.z0; z <= box.z1; ++z) {
+    for (std::uint32_t y = box.y0; y <= box.y1; ++y) {
+      for (std::uint32_t x = box.x0; x <= box.x1; ++x) {
+        if (cells > 2) {
+          const Vec3d centre = grid.origin + Vec3d{(static_cast<double>(x) + 0.5) * grid.cell_size,
+                                                   (static_cast<double>(y) + 0.5) * grid.cell_size,
+                                                   (static_cast<double>(z) + 0.5) * grid.cell_size};
+          const double height = dot(normal, centre - a);
+          if (height > half || height < -half) continue;
+        }
+        visit(grid.index(x, y, z));
+      }
+    }
+  }
+}
+
+struct CountReferences {
+  CellGrid grid;
+  View<const Facet> facets;
+  View<std::uint32_t> counts;
+
+  AERATE_HD void operator()(std::size_t i) const {
+    const View<std::uint32_t> cells = counts;
+    for_each_cell(grid, facets[i], [cells](std::size_t cell) { atomic_add(cells[cell], 1); });
+  }
+};
+
+// The order inside a cell depends on timing; no query can see it ("is any nearer").
+struct FillReferences {
+  CellGrid grid;
+  View<const Facet> facets;
+  View<std::uint32_t> remaining;
+  View<const std::uint32_t> offsets;
+  View<std::uint32_t> references;
+
+  AERATE_HD void operator()(std::size_t i) const {
+    const FillReferences self = *this;
+    for_each_cell(grid, facets[i], [self, i](std::size_t cell) {
+      const std::uint32_t slot = atomic_add(self.remaining[cell], ~std::uint32_t{0}) - 1;
+      self.references[self.offsets[cell] + slot] = static_cast<std::uint32_t>(i);
+    });
+  }
+};
+
+struct CopyCounts {
+  View<const std::uint32_t> offsets;
+  View<std::uint32_t> counts;
+
+  AERATE_HD void operator()(std::size_t i) const { counts[i] = offsets[i + 1] - offsets[i]; }
+};
+
+// Running sums along one axis; an index is a line of cells.
+struct SumAlongLine {
+  View<std::uint32_t> values;
+  std::size_t lines_per_block, block_stride, line_stride, step, steps;
+
+  AERATE_HD void operator()(std::size_t line) const {
+    const std::size_t first = line / lines_per_block * block_stride + line % lines_per_block * line_stride;
+    std::uint32_t sum = 0;
+    for (std::size_t k = 0; k < steps; ++k) {
+      sum += values[first + k * step];
+      values[first + k * step] = sum;
+    }
+  }
+};
+
+}  // namespace grid_detail
+
+template <typename Executor>
+struct FacetGrid {
+  typename Executor::template Buffer<std::uint32_t> offsets, references, summed;
+  FacetGridView view;
+
+  std::size_t bytes() const {
+    return (offsets.size() + references.size() + summed.size()) * sizeof(std::uint32_t);
+  }
+};
+
+// The grid over `box` (of all facets) with cells of `cell_size` mm.
+inline CellGrid make_cell_grid(const Box3d& box, double cell_size) {
+  CellGrid grid;
+  grid.origin = box.lower;
+  grid.cell_size = cell_size;
+  grid.cells_per_mm = 1.0 / cell_size;
+  const Vec3d extent = box.upper - box.lower;
+  grid.count_x = static_cast<std::uint32_t>(extent.x * grid.cells_per_mm) + 1;
+  grid.count_y = static_cast<std::uint32_t>(extent.y * grid.cells_per_mm) + 1;
+  grid.count_z = static_cast<std::uint32_t>(extent.z * grid.cells_per_mm) + 1;
+  return grid;
+}
+
+// Enters the facets, which must stay alive beside the index. O(facets + cells + references).
+// Throws std::length_error for more than 2^32 - 1 references.
+template <typename Executor>
+FacetGrid<Executor> build_facet_grid(const Executor& executor, View<const Facet> facets,
+                                     const CellGrid& grid) {
+  const std::size_t cells = grid.cell_count();
+  FacetGrid<Executor> index;
+  index.summed = executor.template allocate<std::uint32_t>(cells + 1);
+  const View<std::uint32_t> counts = index.summed.view();
+  executor.for_each_index(cells + 1, SetAll<std::uint32_t>{counts, 0});
+  executor.for_each_index(facets.size, grid_detail::CountReferences{grid, facets, counts});
+
+  index.offsets = executor.template allocate<std::uint32_t>(cells + 1);
+  const View<std::uint32_t> offsets = index.offsets.view();
+  const std::uint64_t total = executor.exclusive_scan(counts, offsets);
+  if (total > 0xffffffffU) throw std::length_error("facet grid: more than 2^32 - 1 references");
+  index.references = executor.template allocate<std::uint32_t>(total);
+  executor.for_each_index(
+      facets.size, grid_detail::FillReferences{grid, facets, counts, offsets, index.references.view()});
+
+  executor.for_each_index(cells, grid_detail::CopyCounts{offsets, counts});
+  const std::size_t nx = grid.count_x, ny = grid.count_y, nz = grid.count_z;
+  executor.for_each_index(ny * nz, grid_detail::SumAlongLine{counts, ny * nz, 0, nx, 1, nx});
+  executor.for_each_index(nx * nz, grid_detail::SumAlongLine{counts, nx, nx * ny, 1, nx, ny});
+  executor.for_each_index(nx * ny, grid_detail::SumAlongLine{counts, nx * ny, 0, 1, nx * ny, nz});
+
+  index.view = {grid, facets, offsets, index.references.view(), counts};
+  return index;
+}
+
+}  // namespace aerate::kernels
