@@ -3,30 +3,33 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/mesh.h"
 #include "core/packing.h"
 
 namespace aerate {
 
-// Checks every sphere in fp64 against the mesh (wall, winding number) and against its neighbours (gap),
-// shrinks what is too large by no more than rounding explains, and drops the rest and whatever became smaller
-// than min_radius. The counts are added to the packing's statistics. Always run on a packing before it is
-// used.
+// Checks every sphere in fp64 against the mesh (winding number 1 at the centre, wall) and against its
+// neighbours (gap), by other means than the packers use: a bounding-volume hierarchy and a search among
+// pairs. Shrinks what is too large by no more than rounding explains (1e-6 of the model's size), drops the
+// rest and whatever became smaller than min_radius, and adds the counts to the statistics. Always run on a
+// packing before it is used. Order is kept.
 Packing verify_packing(const Mesh& mesh, Packing packing);
 
-// Exact (fp64) distance from each centre to the surface of `mesh`.
+// Exact (fp64) distance from each point to the surface of `mesh`, mm.
 std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d> points);
 
-// Smallest clearances of a set of balls: to the surface, and between two balls (nullopt for fewer than two).
+// Smallest clearances of a set of balls, mm: to the surface (infinite without balls), and between two balls
+// (nullopt for fewer than two). Negative where something overlaps.
 struct Clearances {
   double wall = 0;
   std::optional<double> gap;
 };
 Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres);
 
-// The largest ball that fits inside the model (its clearance to the surface), for the message when nothing
-// fits under the limits: centre, and its radius with no wall at all. Accurate to about 1 %.
+// The largest ball inside the model where its winding number is 1, touching the surface (no wall); radius 0
+// if there is none. For the message when nothing fits under the limits: accurate to about 1 %.
 Sphere largest_inscribed_sphere(const Mesh& mesh);
 
 }  // namespace aerate

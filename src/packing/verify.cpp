@@ -1,0 +1,164 @@
+#include "packing/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tbb/parallel_for.h>
+
+#include "kernels/triangle_bvh.h"
+#include "kernels/winding.h"
+#include "packing/sphere_pairs.h"
+
+namespace aerate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A model's own fp32 coordinates are not better than this share of its size.
+constexpr double kRoundingShare = 1e-6;
+
+double size_of(const Mesh& mesh) {
+  const Box3f box = bounding_box(mesh);
+  return std::max(length(to_double(box.upper) - to_double(box.lower)), 0.0);
+}
+
+// A radius a little below `limit`, so that sums that were rounded once more still keep it.
+double just_below(double limit) {
+  return limit - 4 * std::numeric_limits<double>::epsilon() * std::abs(limit);
+}
+
+// What a sphere loses: nothing, a little, or all (radius 0).
+double checked_radius(const Sphere& sphere, double allowed, double tolerance) {
+  if (sphere.radius <= allowed) return sphere.radius;
+  return sphere.radius - allowed <= tolerance ? just_below(allowed) : 0.0;
+}
+
+double distance_of(const kernels::TriangleBvhView& bvh, Vec3d point, double limit) {
+  return std::sqrt(bvh.nearest(point, limit * limit).distance_squared);
+}
+
+}  // namespace
+
+Packing verify_packing(const Mesh& mesh, Packing packing) {
+  if (packing.spheres.empty()) return packing;
+  const kernels::HostTriangleBvh bvh(mesh.positions, mesh.triangles);
+  const kernels::HostWinding winding(mesh.positions, mesh.triangles);
+  const PackingLimits& limits = packing.limits;
+  const double tolerance = kRoundingShare * size_of(mesh);
+
+  std::vector<double> radii(packing.spheres.size());
+  tbb::parallel_for(std::size_t{0}, packing.spheres.size(), [&](std::size_t i) {
+    const Sphere& sphere = packing.spheres[i];
+    const double needed = sphere.radius + limits.wall;
+    const double distance = distance_of(bvh.view(), sphere.centre, needed * (1 + 1e-9));
+    const bool is_inside = winding.view().winding_number(sphere.centre) == 1;
+    radii[i] = is_inside ? checked_radius(sphere, distance - limits.wall, tolerance) : 0.0;
+  });
+  for (const SpherePair& pair : find_pairs_within(packing.spheres, limits.gap)) {
+    double& first = radii[pair.first];
+    double& second = radii[pair.second];
+    if (first == 0 || second == 0) continue;
+    const double distance = length(packing.spheres[pair.first].centre - packing.spheres[pair.second].centre);
+    const double room = distance - limits.gap;
+    if (first + second <= room) continue;
+    // The smaller gives way; of two equal ones, the later.
+    double& smaller = first < second ? first : second;
+    const double larger = std::max(first, second);
+    const double excess = smaller + larger - room;
+    smaller = excess <= tolerance ? std::max(just_below(room - larger), 0.0) : 0.0;
+  }
+
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    Sphere sphere = packing.spheres[i];
+    const bool is_shrunk = radii[i] < sphere.radius;
+    // What is smaller by rounding alone is not below the limit.
+    if (radii[i] <= 0 || radii[i] < limits.min_radius - tolerance) {
+      ++packing.statistics.dropped_by_verification;
+      continue;
+    }
+    if (is_shrunk) ++packing.statistics.shrunk_by_verification;
+    sphere.radius = radii[i];
+    packing.spheres[kept++] = sphere;
+  }
+  packing.spheres.resize(kept);
+  return packing;
+}
+
+std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d> points) {
+  return kernels::HostTriangleBvh(mesh.positions, mesh.triangles).distances(points);
+}
+
+Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres) {
+  Clearances clearances{kInfinity, std::nullopt};
+  if (spheres.empty()) return clearances;
+  std::vector<Vec3d> centres;
+  centres.reserve(spheres.size());
+  double smallest_radius = kInfinity;
+  for (const Sphere& sphere : spheres) {
+    centres.push_back(sphere.centre);
+    smallest_radius = std::min(smallest_radius, sphere.radius);
+  }
+  const std::vector<double> distances = distances_to_surface(mesh, centres);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    clearances.wall = std::min(clearances.wall, distances[i] - spheres[i].radius);
+  }
+  if (spheres.size() < 2) return clearances;
+  // Widen the search until a pair is in it.
+  for (double reach = std::max(smallest_radius, 1e-3);; reach *= 2) {
+    double gap = kInfinity;
+    for (const SpherePair& pair : find_pairs_within(spheres, reach)) gap = std::min(gap, pair.gap);
+    if (gap < kInfinity) {
+      clearances.gap = gap;
+      return clearances;
+    }
+  }
+}
+
+Sphere largest_inscribed_sphere(const Mesh& mesh) {
+  constexpr std::size_t kSteps = 48;
+  const kernels::HostTriangleBvh bvh(mesh.positions, mesh.triangles);
+  const kernels::HostWinding winding(mesh.positions, mesh.triangles);
+  const Box3f box_f = bounding_box(mesh);
+  const Vec3d lower = to_double(box_f.lower);
+  const Vec3d extent = to_double(box_f.upper) - lower;
+
+  const auto clearance = [&](Vec3d p) {
+    return winding.view().winding_number(p) == 1 ? distance_of(bvh.view(), p, kInfinity) : 0.0;
+  };
+  std::vector<Sphere> starts(kSteps * kSteps * kSteps);
+  tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+    const auto fraction = [](std::size_t step) { return (static_cast<double>(step) + 0.5) / kSteps; };
+    const Vec3d p = lower + Vec3d{extent.x * fraction(i % kSteps), extent.y * fraction(i / kSteps % kSteps),
+                                  extent.z * fraction(i / (kSteps * kSteps))};
+    starts[i] = {p, clearance(p), SphereKind::adaptive};
+  });
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; });
+  starts.resize(32);
+
+  // Pattern search: try the 26 neighbours at a step that halves when none is better.
+  const double first_step = std::max({extent.x, extent.y, extent.z}) / kSteps;
+  tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+    Sphere& best = starts[i];
+    for (double step = first_step; step > 1e-3 * first_step;) {
+      Sphere next = best;
+      for (int direction = 0; direction < 27; ++direction) {
+        const Vec3d offset{static_cast<double>(direction % 3 - 1), static_cast<double>(direction / 3 % 3 - 1),
+                           static_cast<double>(direction / 9 - 1)};
+        const Vec3d p = best.centre + offset * step;
+        const double radius = clearance(p);
+        if (radius > next.radius) next = {p, radius, SphereKind::adaptive};
+      }
+      if (next.radius > best.radius) {
+        best = next;
+      } else {
+        step /= 2;
+      }
+    }
+  });
+  return *std::max_element(starts.begin(), starts.end(),
+                           [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+}
+
+}  // namespace aerate
