@@ -7,6 +7,7 @@
 #include "kernels/atomic.h"
 #include "kernels/facet.h"
 #include "kernels/point_triangle.h"
+#include "kernels/projected_triangle.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
 
@@ -119,7 +120,8 @@ struct FacetGridView {
 
 namespace grid_detail {
 
-// The cells a facet is entered in: those of its bounding box that its plane crosses.
+// The cells a facet is entered in: those it meets, by separating axes (the paper's test: the box's faces, the
+// facet's plane, and the nine pairs of edges as three projections).
 template <typename Visit>
 AERATE_HD void for_each_cell(const CellGrid& grid, const Facet& facet, Visit visit) {
   const Vec3d a = to_double(facet.a);
@@ -133,16 +135,26 @@ AERATE_HD void for_each_cell(const CellGrid& grid, const Facet& facet, Visit vis
                         normal.z < 0 ? -normal.z : normal.z};
   // Half a cell's extent along the normal, a little widened: cells are entered too often rather than too
   // seldom.
-  const double half = 0.5 * grid.cell_size * (steepness.x + steepness.y + steepness.z) * (1 + 1e-6);
+  const double plane_reach = 0.5 * grid.cell_size * (steepness.x + steepness.y + steepness.z) * (1 + 1e-6);
+  const ProjectedTriangle xy{{a.x, a.y}, {b.x, b.y}, {c.x, c.y}};
+  const ProjectedTriangle yz{{a.y, a.z}, {b.y, b.z}, {c.y, c.z}};
+  const ProjectedTriangle zx{{a.z, a.x}, {b.z, b.x}, {c.z, c.x}};
+  const double half = grid.cell_size / 2;
   for (std::uint32_t z = box.z0; z <= box.z1; ++z) {
     for (std::uint32_t y = box.y0; y <= box.y1; ++y) {
       for (std::uint32_t x = box.x0; x <= box.x1; ++x) {
+        // Facets of a few cells are not worth the test, which only saves references.
         if (cells > 2) {
           const Vec3d centre = grid.origin + Vec3d{(static_cast<double>(x) + 0.5) * grid.cell_size,
                                                    (static_cast<double>(y) + 0.5) * grid.cell_size,
                                                    (static_cast<double>(z) + 0.5) * grid.cell_size};
           const double height = dot(normal, centre - a);
-          if (height > half || height < -half) continue;
+          if (height > plane_reach || height < -plane_reach) continue;
+          if (cells > 8 &&
+              !(xy.meets_square(centre.x, centre.y, half) && yz.meets_square(centre.y, centre.z, half) &&
+                zx.meets_square(centre.z, centre.x, half))) {
+            continue;
+          }
         }
         visit(grid.index(x, y, z));
       }

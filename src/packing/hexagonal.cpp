@@ -28,12 +28,13 @@ kernels::HexagonalParameters parameters_for(const Box3d& box, const PackingLimit
   return parameters;
 }
 
-// Cells about twice as wide as a facet hold a handful of references each. They need not be finer than what a
+// Cells a few times as wide as a facet hold a handful of references each. They need not be finer than what a
 // query reaches, and must not be many more than there are facets or candidates.
 kernels::CellGrid grid_for(const Box3d& box, std::size_t facets, const PackingLimits& limits) {
   const Vec3d extent = box.upper - box.lower;
   const double box_area = 2 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
-  const double facet_scale = 2 * std::sqrt(box_area / static_cast<double>(std::max<std::size_t>(facets, 1)));
+  const double facet_scale =
+      2.5 * std::sqrt(box_area / static_cast<double>(std::max<std::size_t>(facets, 1)));
   const double reach = 2 * (limits.max_radius + limits.wall);
   const double most_cells =
       std::max(static_cast<double>(std::size_t{1} << 21), 8 * static_cast<double>(facets));

@@ -97,6 +97,32 @@ TEST(Hexagonal, EqualsBruteForceWithAllFourKinds) {
   }
 }
 
+// A fan of long diagonal slivers, as lathe-turned parts have them: entered by bounding boxes, they would fill
+// the index.
+TEST(Hexagonal, IndexesLongDiagonalTrianglesInLinearMemory) {
+  constexpr std::uint32_t kSides = 20000;
+  Mesh disc;
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kSides;
+    for (const double height : {0.0, 30.0}) {
+      disc.positions.push_back(to_float({40 * std::cos(angle), 40 * std::sin(angle), height}));
+    }
+  }
+  disc.positions.push_back({0, 0, 0});
+  disc.positions.push_back({0, 0, 30});
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
+    disc.triangles.push_back({a, b, b + 1});
+    disc.triangles.push_back({a, b + 1, a + 1});
+    disc.triangles.push_back({2 * kSides, b, a});
+    disc.triangles.push_back({2 * kSides + 1, a + 1, b + 1});
+  }
+  Monitor monitor;
+  const Packing packing = pack_hexagonal(disc, {1, 0.5, 0.1, 3}, monitor);
+  EXPECT_GT(density(disc, packing), 0.3);
+  EXPECT_LT(packing.statistics.index_bytes, std::size_t{100} << 20);
+}
+
 TEST(Hexagonal, KeepsWallAndGapExactly) {
   const Mesh torus = test::make_torus(20, 8, 96, 48);
   Monitor monitor;
