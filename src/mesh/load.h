@@ -11,10 +11,12 @@ namespace aerate {
 
 enum class LengthUnit { millimetre, centimetre, metre, inch };
 
+double millimetres_per(LengthUnit unit);
+
 struct LoadOptions {
   // For formats that carry no unit (all but 3MF); 3MF files bring their own and refuse a contradicting one.
   std::optional<LengthUnit> unit;
-  double scale = 1.0;
+  double scale = 1.0;  // on top of the unit; finite and positive
 };
 
 struct LoadedModel {
@@ -25,9 +27,12 @@ struct LoadedModel {
 };
 
 // Reads STL (binary, ASCII), OBJ, PLY, OFF through assimp and 3MF through lib3mf (unit, components and build
-// transforms applied). Triangle order is that of the file; polygons are triangulated.
-// Throws InputError (missing, a directory, empty, truncated, wrong triangle count, NaN or infinite
-// coordinates, unknown or garbled content), UsageError for a unit that contradicts the file's.
+// transforms applied); the file name's ending (any case) says which. Triangle order is that of the file, with
+// degenerate triangles; polygons are triangulated; points and lines are left out. Coordinates are converted
+// to millimetres in double and rounded once; with unit and scale 1 they keep the bits of a binary file.
+// (assimp reads decimal text to within one unit in the last place.) Throws InputError (missing, a directory,
+// empty, truncated, wrong triangle count, NaN or infinite coordinates, unknown or garbled content, no
+// triangles), UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace aerate
