@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "core/mesh.h"
 #include "core/monitor.h"
@@ -11,16 +12,24 @@ namespace aerate {
 
 struct CarveOptions {
   // Void surfaces deviate from the planned shapes by at most this, and inwards only: a void is never larger
-  // than planned. Millimetres.
+  // than planned. Millimetres, > 0.
   double tolerance = 0.05;
 };
 
-// The void surfaces of a plan, inward-oriented, one closed shell for each sphere, in the order of the plan.
-// Each comes from an OpenVDB level set whose voxels suit its radius; its vertices are then projected onto the
-// planned shape. Vertices are rounded towards the inside of the ball.
+// The outer surface as it is, and the void surfaces of a plan: inward-oriented, one closed shell for each
+// sphere, in the order of the plan. Each comes from an OpenVDB level set whose voxels suit its radius and the
+// tolerance; its vertices are projected onto the planned sphere, spread evenly over it, and rounded towards
+// its inside. A void keeps at least 90 % of its volume however coarse the tolerance is. The bytes depend on
+// the arguments alone. Throws FailureError if fp32 cannot hold a void so exactly where it is, or if a void
+// took more than about a million triangles; InterruptedError.
 Solid carve_keeping_surface(Mesh outer, const VoidPlan& plan, const CarveOptions& options, Monitor& monitor);
 
-// Number of triangles that `carve_keeping_surface` will make for the voids alone.
+// Number of triangles that `carve_keeping_surface` will make for the voids alone. Throws as that does.
 std::size_t estimate_void_triangles(const VoidPlan& plan, const CarveOptions& options);
+
+// The finest tolerance, not below that of `options` and within 1 %, at which the voids take at most
+// `max_triangles`; nullopt if they take more even at their coarsest.
+std::optional<double> loosen_tolerance(const VoidPlan& plan, const CarveOptions& options,
+                                       std::size_t max_triangles);
 
 }  // namespace aerate

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/mesh.h"
+#include "kernels/sphere.h"
+
+// How the balls of a plan become shells: triangulations of the unit sphere, made once from a level set and
+// then moved and scaled into place.
+
+namespace aerate {
+
+// A closed convex-as-can-be triangulation whose vertices lie on the unit sphere.
+struct BallTemplate {
+  std::vector<Vec3d> directions;    // unit vectors
+  std::vector<Triangle> triangles;  // counter-clockwise seen from outside
+  double sagitta = 0;  // depth of the deepest point of a triangle below the sphere: 1 - its distance to the
+                       // centre
+  double volume_share = 0;  // volume over that of the ball
+};
+
+// Projects a closed surface around `centre` onto the unit sphere about it and splits its quads the way that
+// loses the least volume. nullopt if the surface is not one closed 2-manifold of genus 0 all of whose
+// triangles face away from the centre after the projection.
+std::optional<BallTemplate> project_onto_ball(const Mesh& surface, Vec3d centre);
+
+// Spreads the vertices so that the sagitta falls to about 1.25 times what equilateral triangles would have.
+// nullopt if the result fails the checks of `project_onto_ball`.
+std::optional<BallTemplate> relax(BallTemplate ball);
+
+// How far inside the ball its vertices are planned, so that none of them leaves it when its coordinates are
+// rounded to fp32. The largest coordinate M of the ball rounds by at most 2^-24 M, so a vertex moves by at
+// most sqrt(3) 2^-24 M < 2^-23 M; what is left covers the rounding of the fp64 arithmetic.
+double rounding_margin(const Sphere& ball);
+
+// Where one shell goes in a mesh.
+struct ShellPlace {
+  std::span<Vec3f> positions;      // as many as the template's directions
+  std::span<Triangle> triangles;   // as many as the template's triangles
+  std::uint32_t first_vertex = 0;  // index of positions[0] in its mesh
+};
+
+// The ball's surface, facing inward (a void), by a template. All of it lies within the ball, at most
+// `radius * sagitta + 2 * rounding_margin` deep.
+void place_void(const BallTemplate& ball_template, const Sphere& ball, const ShellPlace& place);
+
+// Templates of increasing refinement, each made when it is first asked for: OpenVDB level sets of balls whose
+// radius grows from level to level by 5 %, measured in voxels.
+class BallLadder {
+ public:
+  BallLadder();
+  ~BallLadder();
+
+  // The first level, and so about the coarsest, that keeps the surface of a ball within `tolerance` mm of the
+  // sphere and its volume above 90 %. Throws FailureError if fp32 cannot hold it so exactly at its place, or
+  // if that took more than about a million triangles.
+  std::size_t level_for(const Sphere& ball, double tolerance);
+
+  // Makes the levels that `level_for` will probably ask for, in parallel.
+  void prepare(std::span<const Sphere> balls, double tolerance);
+
+  // Of a level that `level_for` has returned.
+  const BallTemplate& operator[](std::size_t level) const { return *levels_[level]->ball; }
+
+ private:
+  struct Level {
+    std::optional<BallTemplate> ball;  // nullopt if no template could be made at this refinement
+  };
+  const Level& make(std::size_t level);
+
+  std::vector<std::unique_ptr<Level>> levels_;
+};
+
+}  // namespace aerate
