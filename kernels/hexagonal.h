@@ -46,9 +46,11 @@ struct HexagonalLattice {
 
   // p0 of the paper.
   AERATE_HD Vec3d cell_position(std::size_t cell) const {
-    const double i = static_cast<double>(cell % count_x);
-    const double j = static_cast<double>(cell / count_x % count_y);
-    const double k = static_cast<double>(cell / (count_x * count_y));
+    const std::size_t column = cell % count_x, row = cell / count_x % count_y,
+                      layer = cell / (count_x * count_y);
+    const double i = static_cast<double>(column);
+    const double j = static_cast<double>(row);
+    const double k = static_cast<double>(layer);
     const bool odd = is_odd_layer(cell);
     return {box.lower.x + radius * (1 + 2 * i + (odd ? 1.0 : 0.0)),
             box.lower.y + radius * (1 + kRow * 2 * j + (odd ? kBarycentre : 0.0)),

@@ -95,7 +95,10 @@ double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits) {
   const double replaced =
       replaces ? std::min(2 * cells, shell_volume / (4 * std::sqrt(2.0) * radius * radius * radius)) * 61 : 0;
   const double facets = static_cast<double>(mesh.triangles.size());
-  const double index_bytes = facets * (sizeof(kernels::Facet) + 4 * 12 + 8 * 8) + (1 << 24);
+  // Facets, twelve references each, and at most eight cells for each at eight bytes (see grid_for).
+  constexpr double kIndexBytesPerFacet = sizeof(kernels::Facet) + 12 * sizeof(std::uint32_t) + 8 * 8;
+  constexpr double kLeastIndexBytes = 16777216;
+  const double index_bytes = facets * kIndexBytesPerFacet + kLeastIndexBytes;
   // Of all places at most about three in four lie inside a box-filling model and are emitted (twice, while
   // they are copied).
   return index_bytes + std::max(places, replaced) * static_cast<double>(kernels::kBytesPerCandidate) +

@@ -16,8 +16,8 @@ namespace {
 // two spheres of the class can be apart and still be a pair, so that neighbours are in adjacent cells.
 class RadiusClass {
  public:
-  RadiusClass(std::span<const Sphere> spheres, std::vector<std::uint32_t> members, double largest_radius,
-              double reach, Vec3d origin)
+  RadiusClass(std::span<const Sphere> spheres, const std::vector<std::uint32_t>& members,
+              double largest_radius, double reach, Vec3d origin)
       : largest_radius_(largest_radius), cell_size_(2 * largest_radius + reach), origin_(origin) {
     entries_.reserve(members.size());
     for (const std::uint32_t i : members) {
@@ -85,13 +85,13 @@ Classes classify(std::span<const Sphere> spheres, double reach) {
   }
   Classes classes;
   classes.of_sphere.resize(spheres.size());
-  for (auto& [exponent, indices] : members) {
+  for (const auto& [exponent, indices] : members) {
     double largest = 0;
     for (const std::uint32_t i : indices) {
       largest = std::max(largest, spheres[i].radius);
       classes.of_sphere[i] = static_cast<std::uint8_t>(classes.by_radius.size());
     }
-    classes.by_radius.emplace_back(spheres, std::move(indices), largest, reach, origin);
+    classes.by_radius.emplace_back(spheres, indices, largest, reach, origin);
   }
   return classes;
 }

@@ -144,8 +144,8 @@ Sphere largest_inscribed_sphere(const Mesh& mesh) {
     for (double step = first_step; step > 1e-3 * first_step;) {
       Sphere next = best;
       for (int direction = 0; direction < 27; ++direction) {
-        const Vec3d offset{static_cast<double>(direction % 3 - 1), static_cast<double>(direction / 3 % 3 - 1),
-                           static_cast<double>(direction / 9 - 1)};
+        const int dx = direction % 3 - 1, dy = direction / 3 % 3 - 1, dz = direction / 9 - 1;
+        const Vec3d offset{static_cast<double>(dx), static_cast<double>(dy), static_cast<double>(dz)};
         const Vec3d p = best.centre + offset * step;
         const double radius = clearance(p);
         if (radius > next.radius) next = {p, radius, SphereKind::adaptive};
