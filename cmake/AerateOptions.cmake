@@ -17,7 +17,9 @@ target_compile_options(aerate_options INTERFACE
     -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion>)
 
 if(AERATE_SANITIZE)
-  target_compile_options(aerate_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_compile_options(aerate_options INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined -fno-omit-frame-pointer>
+    $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-fsanitize=address,-fsanitize=undefined,-fno-omit-frame-pointer>)
   target_link_options(aerate_options INTERFACE -fsanitize=address,undefined)
 endif()
 

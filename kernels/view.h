@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 #include "kernels/annotations.h"
 
@@ -13,10 +14,14 @@ struct View {
   T* data = nullptr;
   std::size_t size = 0;
 
-  AERATE_HD T& operator[](std::size_t i) const { return data[i]; }
-
+  View() = default;
+  AERATE_HD constexpr View(T* first, std::size_t count) : data(first), size(count) {}
   // A view of mutable elements reads as a view of constant ones.
-  AERATE_HD operator View<const T>() const { return {data, size}; }
+  template <typename Mutable>
+  requires std::is_same_v<const Mutable, T> AERATE_HD constexpr View(View<Mutable> other)
+      : data(other.data), size(other.size) {}
+
+  AERATE_HD T& operator[](std::size_t i) const { return data[i]; }
 };
 
 // Kernel: fills a buffer.
