@@ -42,14 +42,22 @@ AERATE_HD inline int edge_crossing(Vec3d a, Vec3d b, double x, double y) {
   return left ? 0 : -1;
 }
 
-// +1 or -1 if the ray from p in +z leaves or enters the solid through the facet, else 0.
-AERATE_HD inline int facet_crossing(const Facet& facet, Vec3d p) {
+// +1 or -1 if the line through (x, y) along z, followed upwards, leaves or enters the solid through the
+// facet, else 0.
+AERATE_HD inline int line_crossing(const Facet& facet, double x, double y) {
   const Vec3d a = to_double(facet.a);
   const Vec3d b = to_double(facet.b);
   const Vec3d c = to_double(facet.c);
-  const int sign =
-      edge_crossing(a, b, p.x, p.y) + edge_crossing(b, c, p.x, p.y) + edge_crossing(c, a, p.x, p.y);
+  return edge_crossing(a, b, x, y) + edge_crossing(b, c, x, y) + edge_crossing(c, a, x, y);
+}
+
+// The same for the ray from p in +z.
+AERATE_HD inline int facet_crossing(const Facet& facet, Vec3d p) {
+  const int sign = line_crossing(facet, p.x, p.y);
   if (sign == 0) return 0;
+  const Vec3d a = to_double(facet.a);
+  const Vec3d b = to_double(facet.b);
+  const Vec3d c = to_double(facet.c);
   const double height_above = dot(cross(b - a, c - a), p - a);
   return (sign > 0 ? height_above < 0 : height_above > 0) ? sign : 0;
 }
@@ -90,12 +98,17 @@ struct WindingView {
           p.z >= box.lower.z && p.z <= box.upper.z)) {
       return 0;
     }
-    const std::size_t cell = grid.cell(grid.cell_x(p.x), grid.cell_y(p.y));
     int winding = 0;
-    for (std::uint32_t i = offsets[cell]; i < offsets[cell + 1]; ++i) {
-      winding += winding_detail::facet_crossing(facets[references[i]], p);
-    }
+    for_each_near(p.x, p.y,
+                  [&](std::uint32_t i) { winding += winding_detail::facet_crossing(facets[i], p); });
     return winding;
+  }
+
+  // Calls visit(index of facet) for the facets that the line through (x, y) along z may meet.
+  template <typename Visit>
+  AERATE_HD void for_each_near(double x, double y, Visit visit) const {
+    const std::size_t cell = grid.cell(grid.cell_x(x), grid.cell_y(y));
+    for (std::uint32_t i = offsets[cell]; i < offsets[cell + 1]; ++i) visit(references[i]);
   }
 };
 

@@ -1,0 +1,122 @@
+#include "mesh/overlap.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <tbb/parallel_for.h>
+
+#include "kernels/winding.h"
+
+namespace aerate {
+namespace {
+
+// Lines are summed up in blocks of fixed size, so that the sums do not depend on threads.
+constexpr std::size_t kBlocks = 256;
+constexpr std::size_t kLinesPerBlock = 256;
+
+// Overlap along a line that is shorter than this share of the model's diagonal is what rounding makes of
+// surfaces that touch.
+constexpr double kRoundingShare = 1e-6;
+
+struct Crossing {
+  double z;
+  int sign;  // +1 on leaving the solid upwards
+  std::uint32_t facet;
+};
+
+double height_at(const kernels::Facet& facet, double x, double y) {
+  const Vec3d a = to_double(facet.a);
+  const Vec3d b = to_double(facet.b);
+  const Vec3d c = to_double(facet.c);
+  const Vec3d normal = cross(b - a, c - a);
+  const double z = a.z - (normal.x * (x - a.x) + normal.y * (y - a.y)) / normal.z;
+  // A facet nearly parallel to the line has no accurate height, but it has bounds.
+  const double lowest = std::min({a.z, b.z, c.z});
+  const double highest = std::max({a.z, b.z, c.z});
+  return std::isnan(z) ? lowest : std::clamp(z, lowest, highest);
+}
+
+struct LineSums {
+  double overlapped = 0;
+  double filled_excess = 0;
+};
+
+class LineMeasure {
+ public:
+  LineMeasure(const kernels::WindingView& winding, const ShellLabels& labels, double least_length,
+              std::vector<std::uint8_t>& overlapping)
+      : winding_(winding), labels_(labels), least_length_(least_length), overlapping_(overlapping) {}
+
+  void add_line(double x, double y, LineSums& sums) {
+    crossings_.clear();
+    winding_.for_each_near(x, y, [&](std::uint32_t facet) {
+      const int sign = kernels::winding_detail::line_crossing(winding_.facets[facet], x, y);
+      if (sign != 0) crossings_.push_back({height_at(winding_.facets[facet], x, y), sign, facet});
+    });
+    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
+      return a.z != b.z ? a.z < b.z : a.facet < b.facet;
+    });
+    int winding = 0;
+    for (std::size_t i = 0; i + 1 < crossings_.size(); ++i) {
+      winding -= crossings_[i].sign;
+      if (winding == 0 || winding == 1) continue;
+      const double length = crossings_[i + 1].z - crossings_[i].z;
+      if (length <= least_length_) continue;
+      sums.overlapped += length;
+      sums.filled_excess += length * (1 - winding);
+      mark(crossings_[i].facet);
+      mark(crossings_[i + 1].facet);
+    }
+  }
+
+ private:
+  void mark(std::uint32_t facet) {
+    const std::uint32_t label = labels_.of_triangle[facet];
+    if (label == kNoShell) return;
+    std::atomic_ref<std::uint8_t>(overlapping_[label]).store(1, std::memory_order_relaxed);
+  }
+
+  const kernels::WindingView& winding_;
+  const ShellLabels& labels_;
+  double least_length_;
+  std::vector<std::uint8_t>& overlapping_;
+  std::vector<Crossing> crossings_;
+};
+
+}  // namespace
+
+Overlap measure_overlap(const Mesh& mesh, const ShellLabels& labels) {
+  const kernels::HostWinding host(mesh.positions, mesh.triangles);
+  const kernels::WindingView& winding = host.view();
+  const Vec3d size = winding.box.upper - winding.box.lower;
+
+  // The R2 sequence: steps of 1/g and 1/g^2 with g the plastic number, g^3 = g + 1. It fills a square evenly
+  // in any direction, and never along the faces of a part, as a square raster would.
+  // (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.)
+  constexpr double kStepX = 0.7548776662466927;
+  constexpr double kStepY = 0.5698402909980532;
+  const auto fraction = [](double value) { return value - std::floor(value); };
+
+  std::vector<LineSums> sums(kBlocks);
+  std::vector<std::uint8_t> overlapping(labels.count, 0);
+  tbb::parallel_for(std::size_t{0}, kBlocks, [&](std::size_t block) {
+    LineMeasure measure(winding, labels, kRoundingShare * length(size), overlapping);
+    for (std::size_t i = block * kLinesPerBlock; i < (block + 1) * kLinesPerBlock; ++i) {
+      const double x = winding.box.lower.x + size.x * fraction(0.5 + kStepX * static_cast<double>(i));
+      const double y = winding.box.lower.y + size.y * fraction(0.5 + kStepY * static_cast<double>(i));
+      measure.add_line(x, y, sums[block]);
+    }
+  });
+
+  const double area_per_line = size.x * size.y / static_cast<double>(kBlocks * kLinesPerBlock);
+  Overlap overlap;
+  for (const LineSums& block : sums) {
+    overlap.volume += block.overlapped * area_per_line;
+    overlap.filled_excess += block.filled_excess * area_per_line;
+  }
+  overlap.shells = static_cast<std::size_t>(std::count(overlapping.begin(), overlapping.end(), 1));
+  return overlap;
+}
+
+}  // namespace aerate
