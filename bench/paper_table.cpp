@@ -51,7 +51,8 @@ double brute_force_seconds(const Mesh& mesh, double radius, std::size_t places) 
   const kernels::HexagonalLattice lattice =
       kernels::make_hexagonal_lattice({to_double(box.lower), to_double(box.upper)}, radius);
   std::mt19937_64 random(1);
-  std::uniform_int_distribution<std::size_t> slot(0, lattice.cell_count() * kernels::kLatticePerCell - 1);
+  std::uniform_int_distribution<std::uint32_t> slot(
+      0, static_cast<std::uint32_t>(lattice.cell_count() * kernels::kLatticePerCell - 1));
   const std::size_t sample = std::clamp<std::size_t>(30'000'000 / mesh.triangles.size(), 20, 20'000);
   std::size_t fitting = 0;
   const auto start = std::chrono::steady_clock::now();

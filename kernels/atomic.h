@@ -20,4 +20,12 @@ AERATE_HD inline std::uint32_t atomic_add(std::uint32_t& counter, std::uint32_t 
 #endif
 }
 
+AERATE_HD inline std::uint64_t atomic_add(std::uint64_t& counter, std::uint64_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(reinterpret_cast<unsigned long long*>(&counter), value);
+#else
+  return std::atomic_ref<std::uint64_t>(counter).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
 }  // namespace aerate::kernels

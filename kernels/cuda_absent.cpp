@@ -1,4 +1,5 @@
 #include "kernels/cuda_device.h"
+#include "kernels/hexagonal_cuda.h"
 
 // In place of the CUDA sources where CUDA is left out.
 
@@ -10,6 +11,10 @@ std::string cuda_build() {
 
 CudaDevices find_cuda_devices() {
   return {{}, "this build has no CUDA"};
+}
+
+HexagonalResult pack_hexagonal_on_cuda(int /*device*/, const HexagonalInput& /*input*/) {
+  throw CudaError(CudaError::Kind::no_device, "this build has no CUDA", "run on the CPU");
 }
 
 }  // namespace aerate::kernels

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <tbb/blocked_range.h>
@@ -15,12 +16,14 @@
 
 // The executors that run kernels on the CPU. An executor is a value with
 //
-//   Buffer<T> allocate<T>(n)             uninitialised memory; RAII, movable
-//   Buffer<T> upload(span<const T>)      copy from the host
-//   vector<T> download(View<const T>)    copy to the host
-//   for_each_index(n, f)                 f(i) for every i < n, in any order; f is a functor of views and
-//   values exclusive_scan(in, out)              out[i] = in[0] + ... + in[i-1] (64 bit); returns the sum of
-//   all sort_pairs(keys, values)             both by (key, value) ascending
+//   Buffer<T> allocate<T>(n)         uninitialised memory; RAII, movable, empty by default
+//   Buffer<T> upload(span<const T>)  copy from the host
+//   vector<T> download(View<T>)      copy to the host
+//   for_each_index(n, f)             f(i) for every i < n, in any order; f is a functor of views and values
+//   exclusive_scan(in, out)          out[i] = in[0] + ... + in[i-1]; returns the sum of all (64 bit, whatever
+//                                    the offsets are); `in` and `out` are different memory
+//   sort_pairs(keys, values)         both by (key, value) ascending
+//   free_bytes()                     what could still be allocated, for those who can do with less
 //
 // and nothing else, so that one template over the executor is the algorithm for every processor, and every
 // executor gives the same bytes (exec_cuda.h has the CUDA one).
@@ -65,6 +68,9 @@ class HostMemory {
   std::vector<std::remove_const_t<T>> download(View<T> source) const {
     return {source.data, source.data + source.size};
   }
+
+  // The host's memory is no concern of the executor: jobs that need too much are refused before they start.
+  std::size_t free_bytes() const { return std::numeric_limits<std::size_t>::max(); }
 };
 
 // One thread, in index order: the reference the others are tested against.

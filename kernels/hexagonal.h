@@ -1,12 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "kernels/atomic.h"
 #include "kernels/facet_grid.h"
+#include "kernels/hexagonal_lattice.h"
 #include "kernels/sphere.h"
 #include "kernels/spheres_61.h"
 #include "kernels/winding.h"
@@ -25,86 +29,7 @@ struct HexagonalParameters {
   double rounding_slack = 0;  // taken off every radius, so that rounded centres keep the gap, mm
 };
 
-// Radii of the scheme for lattice spheres of radius 1.
-inline constexpr double kInterstice = 0.154700538379251529;  // 2 / sqrt(3) - 1 (Eq. 1)
-inline constexpr double kTetrahedral =
-    0.224744871391589049;  // sqrt(3 / 2) - 1: the sphere that fits (not Eq. 2)
-
-// Spheres of the scheme come in cells of one "hepta-sphere": two lattice spheres, four interstices, and a
-// tetrahedral hole above and below two of these.
-inline constexpr std::size_t kLatticePerCell = 2;
-inline constexpr std::size_t kIntersticesPerCell = 4;
-inline constexpr std::size_t kTetrahedralPerCell = 4;
-
-struct HexagonalLattice {
-  Box3d box{};
-  double radius = 1;
-  std::size_t count_x = 0, count_y = 0, count_z = 0;
-
-  AERATE_HD std::size_t cell_count() const { return count_x * count_y * count_z; }
-  AERATE_HD bool is_odd_layer(std::size_t cell) const { return cell / (count_x * count_y) % 2 != 0; }
-
-  // p0 of the paper.
-  AERATE_HD Vec3d cell_position(std::size_t cell) const {
-    const std::size_t column = cell % count_x, row = cell / count_x % count_y,
-                      layer = cell / (count_x * count_y);
-    const double i = static_cast<double>(column);
-    const double j = static_cast<double>(row);
-    const double k = static_cast<double>(layer);
-    const bool odd = is_odd_layer(cell);
-    return {box.lower.x + radius * (1 + 2 * i + (odd ? 1.0 : 0.0)),
-            box.lower.y + radius * (1 + kRow * 2 * j + (odd ? kBarycentre : 0.0)),
-            box.lower.z + radius * kLayer * k};
-  }
-
-  AERATE_HD Vec3d lattice_position(std::size_t slot) const {
-    const Vec3d p0 = cell_position(slot / kLatticePerCell);
-    return slot % kLatticePerCell == 0 ? p0 : p0 + Vec3d{radius, radius * kRow, 0};
-  }
-
-  // p3, p4, p5, p6 of the paper.
-  AERATE_HD Vec3d interstice_position(std::size_t slot) const {
-    const Vec3d p0 = cell_position(slot / kIntersticesPerCell);
-    switch (slot % kIntersticesPerCell) {
-      case 0:
-        return p0 + Vec3d{0, -2 * kBarycentre * radius, 0};
-      case 1:
-        return p0 + Vec3d{radius, -kBarycentre * radius, 0};
-      case 2:
-        return p0 + Vec3d{radius, kBarycentre * radius, 0};
-      default:
-        return p0 + Vec3d{0, 2 * kBarycentre * radius, 0};
-    }
-  }
-
-  // Above and below those interstices that have a lattice sphere of the next layers over them.
-  AERATE_HD Vec3d tetrahedral_position(std::size_t slot) const {
-    const std::size_t cell = slot / kTetrahedralPerCell;
-    const std::size_t which = slot % kTetrahedralPerCell;
-    const bool first = which < 2;
-    const std::size_t interstice = is_odd_layer(cell) ? (first ? 1 : 3) : (first ? 0 : 2);
-    const Vec3d base = interstice_position(cell * kIntersticesPerCell + interstice);
-    return base + Vec3d{0, 0, which % 2 == 0 ? kTetrahedralHeight * radius : -kTetrahedralHeight * radius};
-  }
-
-  // For lattice spheres of radius 1:
-  static constexpr double kRow = 1.732050807568877294;                // sqrt(3): distance of rows
-  static constexpr double kBarycentre = 0.577350269189625765;         // 1 / sqrt(3): row to barycentre
-  static constexpr double kLayer = 1.632993161855452065;              // 2 sqrt(2 / 3): pitch of layers
-  static constexpr double kTetrahedralHeight = 0.408248290463863016;  // 1 / sqrt(6): layer to hole
-};
-
-// Cells whose p0 is inside the box, the odd layers' shift left aside.
-inline HexagonalLattice make_hexagonal_lattice(const Box3d& box, double radius) {
-  const auto steps = [](double extent, double pitch) {
-    return extent < 0 ? std::size_t{0} : static_cast<std::size_t>(extent / pitch) + 1;
-  };
-  HexagonalLattice lattice{box, radius, 0, 0, 0};
-  lattice.count_x = steps(box.upper.x - box.lower.x - radius, 2 * radius);
-  lattice.count_y = steps(box.upper.y - box.lower.y - radius, 2 * HexagonalLattice::kRow * radius);
-  lattice.count_z = steps(box.upper.z - box.lower.z, HexagonalLattice::kLayer * radius);
-  return lattice;
-}
+inline constexpr std::uint32_t kReplacements = std::size(kCentresOf61InUnitSphere);
 
 // What became of a candidate. The first is not a candidate at all: its centre is outside the bounding box.
 enum class CandidateState : std::uint8_t {
@@ -127,9 +52,8 @@ struct CandidateFamily {
   double smaller_radius;
   View<const Vec3d> replacement_centres;  // in the unit sphere
   View<const std::uint32_t> replaced;     // lattice slots
-  std::size_t slots;
 
-  AERATE_HD Vec3d position(std::size_t slot) const {
+  AERATE_HD Vec3d position(std::uint32_t slot) const {
     switch (kind) {
       case SphereKind::lattice:
         return lattice.lattice_position(slot);
@@ -138,8 +62,8 @@ struct CandidateFamily {
       case SphereKind::tetrahedral:
         return lattice.tetrahedral_position(slot);
       default:
-        return lattice.lattice_position(replaced[slot / replacement_centres.size]) +
-               replacement_centres[slot % replacement_centres.size] * lattice.radius;
+        return lattice.lattice_position(replaced[slot / kReplacements]) +
+               replacement_centres[slot % kReplacements] * lattice.radius;
     }
   }
 };
@@ -148,6 +72,7 @@ namespace hexagonal_detail {
 
 struct Classify {
   CandidateFamily family;
+  std::uint32_t first_slot;
   WindingView winding;
   FacetGridView grid;
   double wall;
@@ -171,144 +96,295 @@ struct Classify {
                : CandidateState::near_surface;
   }
 
-  AERATE_HD void operator()(std::size_t slot) const { states[slot] = classify(family.position(slot)); }
-};
-
-struct FlagStates {
-  View<const CandidateState> states;
-  CandidateState first, second;
-  View<std::uint32_t> flags;
-
   AERATE_HD void operator()(std::size_t i) const {
-    flags[i] = states[i] == first || states[i] == second ? 1 : 0;
+    states[i] = classify(family.position(first_slot + static_cast<std::uint32_t>(i)));
   }
 };
 
-struct ListFlagged {
-  View<const std::uint32_t> flags;
-  View<const std::uint32_t> places;
-  View<std::uint32_t> list;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    if (flags[i] != 0) list[places[i]] = static_cast<std::uint32_t>(i);
-  }
-};
-
-// Counts states in runs, so that few threads meet at a counter.
+// Counts states. Each thread takes every 32nd of a block, so that neighbouring threads read neighbouring
+// bytes, and few threads meet at a counter.
 struct CountStates {
-  static constexpr std::size_t kRun = 1024;
+  static constexpr std::size_t kThreads = 32, kSteps = 128;
   View<const CandidateState> states;
-  View<std::uint32_t> counters;
+  View<std::uint64_t> counters;
 
-  AERATE_HD void operator()(std::size_t run) const {
-    const std::size_t end = min_of((run + 1) * kRun, states.size);
+  AERATE_HD static std::size_t threads_for(std::size_t states) {
+    return (states + kThreads * kSteps - 1) / (kThreads * kSteps) * kThreads;
+  }
+
+  AERATE_HD void operator()(std::size_t thread) const {
+    // A byte for each state.
+    static_assert(kSteps < 256 && kCandidateStates <= 8);
+    std::uint64_t counts = 0;
+    const std::size_t begin = thread / kThreads * kThreads * kSteps + thread % kThreads;
+    const std::size_t end = min_of(begin + kThreads * kSteps, states.size);
+    for (std::size_t i = begin; i < end; i += kThreads) {
+      counts += std::uint64_t{1} << (8 * static_cast<unsigned>(states[i]));
+    }
     for (std::size_t state = 0; state < kCandidateStates; ++state) {
-      std::uint32_t count = 0;
-      for (std::size_t i = run * kRun; i < end; ++i) {
-        if (static_cast<std::size_t>(states[i]) == state) ++count;
-      }
+      const std::uint64_t count = counts >> (8 * state) & 0xff;
       if (count != 0) atomic_add(counters[state], count);
     }
   }
 };
 
-struct EmitSpheres {
-  CandidateFamily family;
+// Candidates in one of two states, by groups: what is scanned is then small, and what is written stays in
+// order.
+struct Selection {
+  static constexpr std::size_t kGroup = 32;
   View<const CandidateState> states;
-  View<const std::uint32_t> list;
-  View<Sphere> spheres;
+  CandidateState first, second;
 
-  AERATE_HD void operator()(std::size_t i) const {
-    const std::size_t slot = list[i];
-    const bool smaller = states[slot] == CandidateState::kept_smaller;
-    spheres[i] = {family.position(slot), smaller ? family.smaller_radius : family.radius,
-                  smaller ? SphereKind::interstice : family.kind};
+  AERATE_HD bool holds(std::size_t i) const { return states[i] == first || states[i] == second; }
+  AERATE_HD std::size_t group_count() const { return (states.size + kGroup - 1) / kGroup; }
+
+  // Calls visit(i, n) for the group's candidates: i its index, n its number within the group. Returns how
+  // many there are.
+  template <typename Visit>
+  AERATE_HD std::uint32_t for_each_in_group(std::size_t group, Visit visit) const {
+    std::uint32_t count = 0;
+    const std::size_t end = min_of((group + 1) * kGroup, states.size);
+    for (std::size_t i = group * kGroup; i < end; ++i) {
+      if (holds(i)) visit(i, count++);
+    }
+    return count;
   }
 };
 
-// Candidates in either of two states, ascending.
-template <typename Executor>
-typename Executor::template Buffer<std::uint32_t> list_candidates(const Executor& executor,
-                                                                  View<const CandidateState> states,
-                                                                  CandidateState first,
-                                                                  CandidateState second) {
-  auto flags = executor.template allocate<std::uint32_t>(states.size);
-  auto places = executor.template allocate<std::uint32_t>(states.size);
-  executor.for_each_index(states.size, FlagStates{states, first, second, flags.view()});
-  const std::uint64_t total = executor.exclusive_scan(flags.view(), places.view());
-  auto list = executor.template allocate<std::uint32_t>(total);
-  executor.for_each_index(states.size, ListFlagged{flags.view(), places.view(), list.view()});
-  return list;
-}
+struct CountGroup {
+  Selection selection;
+  View<std::uint32_t> counts;
+
+  AERATE_HD void operator()(std::size_t group) const {
+    counts[group] = selection.for_each_in_group(group, [](std::size_t, std::uint32_t) {});
+  }
+};
+
+struct ListGroup {
+  Selection selection;
+  std::uint32_t first_slot;
+  View<const std::uint32_t> offsets;
+  View<std::uint32_t> slots;
+
+  AERATE_HD void operator()(std::size_t group) const {
+    const std::uint32_t offset = offsets[group], first = first_slot;
+    const View<std::uint32_t> to = slots;
+    selection.for_each_in_group(group, [=](std::size_t i, std::uint32_t n) {
+      to[offset + n] = first + static_cast<std::uint32_t>(i);
+    });
+  }
+};
+
+struct EmitGroup {
+  Selection selection;
+  CandidateFamily family;
+  std::uint32_t first_slot;
+  View<const std::uint32_t> offsets;
+  View<Sphere> spheres;
+
+  AERATE_HD void operator()(std::size_t group) const {
+    const EmitGroup& self = *this;
+    const std::uint32_t offset = offsets[group];
+    selection.for_each_in_group(group, [&self, offset](std::size_t i, std::uint32_t n) {
+      const Vec3d centre = self.family.position(self.first_slot + static_cast<std::uint32_t>(i));
+      const bool smaller = self.selection.states[i] == CandidateState::kept_smaller;
+      self.spheres[offset + n] = {centre, smaller ? self.family.smaller_radius : self.family.radius,
+                                  smaller ? SphereKind::interstice : self.family.kind};
+    });
+  }
+};
 
 }  // namespace hexagonal_detail
+
+// Places that are worked on at a time: enough to fill any device, few enough for a caller that wants to know
+// of progress.
+inline constexpr std::size_t kMostSlots = std::size_t{1} << 20;
+
+// A job, in host memory.
+struct HexagonalInput {
+  std::span<const Vec3f> positions;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+  Box3d box{};    // of the positions
+  CellGrid grid;  // for the facets
+  HexagonalParameters parameters;
+  // At a time; fewer if memory asks for it. The result does not depend on it.
+  std::size_t most_slots = kMostSlots;
+  // Called between pieces of work with the share that is done; what it throws ends the job.
+  std::function<void(double)> progress = [](double) {};
+};
 
 struct HexagonalResult {
   std::vector<Sphere> spheres;  // lattice, interstices, tetrahedral, replacements; each in lattice order
   // By CandidateState, all kinds together. A lattice sphere that was replaced counts as near_surface, and so
   // does each of its 61 places that stayed empty for that reason.
-  std::uint64_t state_counts[kCandidateStates] = {};
+  std::array<std::uint64_t, kCandidateStates> state_counts{};
+  std::size_t index_bytes = 0;
 };
 
-// Bytes that one candidate needs while its family is processed: state, flag, place.
-inline constexpr std::size_t kBytesPerCandidate = sizeof(CandidateState) + 2 * sizeof(std::uint32_t);
+// Memory that one place needs at most while it is worked on: its state, its share of two counts for its
+// group, its sphere, and its entry in the list of replaced spheres.
+inline constexpr std::size_t kBytesPerSlot =
+    sizeof(CandidateState) + 1 + sizeof(Sphere) + sizeof(std::uint32_t);
 
-// Packs the inside of the indexed facets. One family of spheres after the other is classified, listed and
-// emitted, so that memory is that of the most numerous one; none may have 2^32 places or more (the caller's
-// estimate refuses such a job).
+// Packs in slabs of places: all kinds of sphere, one after the other, and the replacements of a slab's
+// lattice spheres at once.
 template <typename Executor>
-HexagonalResult pack_hexagonal(const Executor& executor, const WindingView& winding,
-                               const FacetGridView& grid, const HexagonalParameters& parameters) {
-  using State = CandidateState;
+class HexagonalPacker {
+ public:
+  HexagonalPacker(const Executor& executor, const WindingView& winding, const FacetGridView& grid,
+                  const HexagonalInput& input)
+      : executor_(executor),
+        winding_(winding),
+        grid_(grid),
+        input_(input),
+        lattice_(make_hexagonal_lattice(winding.box, input.parameters.lattice_radius)),
+        centres_(executor.upload(std::span<const Vec3d>(kCentresOf61InUnitSphere))),
+        slab_(slab_for(executor.free_bytes(), input.most_slots)),
+        states_(executor.template allocate<CandidateState>(slab_)),
+        counts_(executor.template allocate<std::uint32_t>(groups_of(slab_))),
+        offsets_(executor.template allocate<std::uint32_t>(groups_of(slab_))),
+        state_counters_(executor.template allocate<std::uint64_t>(kCandidateStates)) {}
+
+  HexagonalResult pack() {
+    executor_.for_each_index(kCandidateStates, SetAll<std::uint64_t>{state_counters_.view(), 0});
+    add_family(family_of(SphereKind::lattice, 1.0), kLatticePerCell);
+    add_family(family_of(SphereKind::interstice, kInterstice), kIntersticesPerCell);
+    CandidateFamily tetrahedral = family_of(SphereKind::tetrahedral, kTetrahedral);
+    tetrahedral.smaller_radius = radius_of(kInterstice);
+    add_family(tetrahedral, kTetrahedralPerCell);
+
+    HexagonalResult result;
+    std::size_t total = 0;
+    for (const auto& pieces : pieces_)
+      for (const std::vector<Sphere>& piece : pieces) total += piece.size();
+    result.spheres.reserve(total);
+    for (auto& pieces : pieces_) {
+      for (const std::vector<Sphere>& piece : pieces)
+        result.spheres.insert(result.spheres.end(), piece.begin(), piece.end());
+      pieces.clear();
+    }
+    const std::vector<std::uint64_t> counts =
+        executor_.download(View<const std::uint64_t>(state_counters_.view()));
+    std::copy(counts.begin(), counts.end(), result.state_counts.begin());
+    return result;
+  }
+
+ private:
+  template <typename T>
+  using Buffer = typename Executor::template Buffer<T>;
+
+  static constexpr std::size_t kLeastSlab = 1024;
+  static std::size_t groups_of(std::size_t slots) {
+    return (slots + hexagonal_detail::Selection::kGroup - 1) / hexagonal_detail::Selection::kGroup;
+  }
+
+  // A tenth of the memory is left for what allocators and scans need beside.
+  static std::size_t slab_for(std::size_t free_bytes, std::size_t most_slots) {
+    const std::size_t fitting = max_of(free_bytes / 10 * 9 / kBytesPerSlot, kLeastSlab);
+    return max_of(min_of(fitting, most_slots), std::size_t{kReplacements});
+  }
+
   // The radius of a family whose spheres have `relative` radius for lattice spheres of 1; 0 if that is below
   // the limit, which rounding must not decide where both are equal.
-  const auto radius_of = [&](double relative) {
-    const double planned = relative * parameters.lattice_radius - parameters.half_gap;
-    const double radius = planned - parameters.rounding_slack;
-    return planned >= parameters.min_radius - parameters.rounding_slack && radius > 0 ? radius : 0.0;
-  };
-  const HexagonalLattice lattice = make_hexagonal_lattice(winding.box, parameters.lattice_radius);
-  const auto centres = executor.upload(std::span<const Vec3d>(kCentresOf61InUnitSphere));
-  HexagonalResult result;
-  typename Executor::template Buffer<std::uint32_t> replaced;
+  double radius_of(double relative) const {
+    const HexagonalParameters& p = input_.parameters;
+    const double planned = relative * p.lattice_radius - p.half_gap;
+    const double radius = planned - p.rounding_slack;
+    return planned >= p.min_radius - p.rounding_slack && radius > 0 ? radius : 0.0;
+  }
 
-  const auto add_family = [&](const CandidateFamily& family) {
-    auto states = executor.template allocate<State>(family.slots);
-    const View<const State> states_view = states.view();
-    executor.for_each_index(
-        family.slots, hexagonal_detail::Classify{family, winding, grid, parameters.wall, states.view()});
+  CandidateFamily family_of(SphereKind kind, double relative) const {
+    return {lattice_, kind, radius_of(relative), 0.0, centres_.view(), {}};
+  }
 
-    auto counters = executor.template allocate<std::uint32_t>(kCandidateStates);
-    executor.for_each_index(kCandidateStates, SetAll<std::uint32_t>{counters.view(), 0});
-    constexpr std::size_t kRun = hexagonal_detail::CountStates::kRun;
-    executor.for_each_index((family.slots + kRun - 1) / kRun,
-                            hexagonal_detail::CountStates{states_view, counters.view()});
-    const std::vector<std::uint32_t> counts = executor.download(View<const std::uint32_t>(counters.view()));
-    for (std::size_t i = 0; i < kCandidateStates; ++i) result.state_counts[i] += counts[i];
-
-    const auto list =
-        hexagonal_detail::list_candidates(executor, states_view, State::kept, State::kept_smaller);
-    auto spheres = executor.template allocate<Sphere>(list.size());
-    executor.for_each_index(list.size(),
-                            hexagonal_detail::EmitSpheres{family, states_view, list.view(), spheres.view()});
-    const std::vector<Sphere> kept = executor.download(View<const Sphere>(spheres.view()));
-    result.spheres.insert(result.spheres.end(), kept.begin(), kept.end());
-    if (family.kind == SphereKind::lattice) {
-      replaced =
-          hexagonal_detail::list_candidates(executor, states_view, State::near_surface, State::near_surface);
+  void add_family(const CandidateFamily& family, std::size_t slots_per_cell) {
+    const std::size_t slots = lattice_.cell_count() * slots_per_cell;
+    for (std::size_t first = 0; first < slots; first += slab_) {
+      const auto first_slot = static_cast<std::uint32_t>(first);
+      const std::size_t count = min_of(slab_, slots - first);
+      add_slab(family, first_slot, count);
+      if (family.kind == SphereKind::lattice) add_replacements(first_slot, count);
+      done_ += static_cast<double>(count);
+      input_.progress(done_ / slots_in_all());
     }
-  };
+  }
 
-  const auto family_of = [&](SphereKind kind, double relative, std::size_t slots) {
-    return CandidateFamily{lattice, kind, radius_of(relative), 0.0, centres.view(), replaced.view(), slots};
-  };
-  add_family(family_of(SphereKind::lattice, 1.0, lattice.cell_count() * kLatticePerCell));
-  add_family(family_of(SphereKind::interstice, kInterstice, lattice.cell_count() * kIntersticesPerCell));
-  CandidateFamily tetrahedral =
-      family_of(SphereKind::tetrahedral, kTetrahedral, lattice.cell_count() * kTetrahedralPerCell);
-  tetrahedral.smaller_radius = radius_of(kInterstice);
-  add_family(tetrahedral);
-  add_family(family_of(SphereKind::replacement, kRadiusOf61InUnitSphere, replaced.size() * centres.size()));
+  double slots_in_all() const {
+    return static_cast<double>(lattice_.cell_count()) *
+           (kLatticePerCell + kIntersticesPerCell + kTetrahedralPerCell);
+  }
+
+  // The spheres of some of a family's places. Leaves their states.
+  void add_slab(const CandidateFamily& family, std::uint32_t first_slot, std::size_t count) {
+    using namespace hexagonal_detail;
+    const View<CandidateState> states{states_.view().data, count};
+    executor_.for_each_index(count,
+                             Classify{family, first_slot, winding_, grid_, input_.parameters.wall, states});
+    executor_.for_each_index(CountStates::threads_for(count), CountStates{states, state_counters_.view()});
+
+    const Selection kept{states, CandidateState::kept, CandidateState::kept_smaller};
+    const std::size_t total = count_groups(kept);
+    if (total == 0) return;
+    if (spheres_.size() < total) {
+      spheres_ = {};
+      spheres_ = executor_.template allocate<Sphere>(total);
+    }
+    const View<Sphere> spheres{spheres_.view().data, total};
+    executor_.for_each_index(kept.group_count(),
+                             EmitGroup{kept, family, first_slot, offsets_.view(), spheres});
+    pieces_[static_cast<std::size_t>(family.kind)].push_back(executor_.download(View<const Sphere>(spheres)));
+  }
+
+  // The 61 spheres each in place of those lattice spheres of the last slab that met the surface.
+  void add_replacements(std::uint32_t first_slot, std::size_t count) {
+    using namespace hexagonal_detail;
+    const Selection met{
+        {states_.view().data, count}, CandidateState::near_surface, CandidateState::near_surface};
+    const std::size_t total = count_groups(met);
+    if (total == 0) return;
+    Buffer<std::uint32_t> replaced = executor_.template allocate<std::uint32_t>(total);
+    executor_.for_each_index(met.group_count(), ListGroup{met, first_slot, offsets_.view(), replaced.view()});
+    CandidateFamily family = family_of(SphereKind::replacement, kRadiusOf61InUnitSphere);
+    const std::size_t at_a_time = slab_ / kReplacements;
+    for (std::size_t i = 0; i < total; i += at_a_time) {
+      family.replaced = {replaced.view().data + i, min_of(at_a_time, total - i)};
+      add_slab(family, 0, family.replaced.size * kReplacements);
+    }
+  }
+
+  // Leaves the groups' offsets.
+  std::size_t count_groups(const hexagonal_detail::Selection& selection) {
+    const std::size_t groups = selection.group_count();
+    const View<std::uint32_t> counts{counts_.view().data, groups};
+    executor_.for_each_index(groups, hexagonal_detail::CountGroup{selection, counts});
+    return executor_.exclusive_scan(counts, View<std::uint32_t>{offsets_.view().data, groups});
+  }
+
+  const Executor& executor_;
+  WindingView winding_;
+  FacetGridView grid_;
+  const HexagonalInput& input_;
+  HexagonalLattice lattice_;
+  Buffer<Vec3d> centres_;
+  std::size_t slab_;
+  Buffer<CandidateState> states_;
+  Buffer<std::uint32_t> counts_, offsets_;
+  Buffer<std::uint64_t> state_counters_;
+  Buffer<Sphere> spheres_;
+  double done_ = 0;
+  std::array<std::vector<std::vector<Sphere>>, 4> pieces_;  // by SphereKind
+};
+
+// The whole job. The triangles go to the executor's memory once, and each sphere comes back once. Fewer than
+// 2^32 places of a kind (the caller's estimate refuses more).
+template <typename Executor>
+HexagonalResult pack_hexagonal(const Executor& executor, const HexagonalInput& input) {
+  const auto facets = gather_facets(executor, input.positions, input.triangles);
+  const auto winding = build_winding_index(executor, facets.view(), input.box);
+  const auto grid = build_facet_grid(executor, facets.view(), input.grid);
+  input.progress(0);
+  HexagonalResult result = HexagonalPacker(executor, winding.view, grid.view, input).pack();
+  result.index_bytes = winding.bytes() + grid.bytes();
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/device.h"
 #include "kernels/sphere.h"
 
 namespace aerate {
@@ -33,6 +34,7 @@ struct Packing {
   std::vector<Sphere> spheres;
   PackingLimits limits;
   PackingStatistics statistics;
+  DeviceUse device;
 };
 
 // Sum of the spheres' volumes, mm3.

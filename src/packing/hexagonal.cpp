@@ -7,6 +7,8 @@
 #include "core/error.h"
 #include "kernels/exec_cpu.h"
 #include "kernels/hexagonal.h"
+#include "kernels/hexagonal_cuda.h"
+#include "packing/run_on_device.h"
 
 namespace aerate {
 namespace {
@@ -45,21 +47,34 @@ kernels::CellGrid grid_for(const Box3d& box, std::size_t facets, const PackingLi
       box, std::min(coarsest, std::max({std::min(facet_scale, reach), finest, finest_for_flat})));
 }
 
-template <typename Executor>
-Packing pack(const Executor& executor, const Mesh& mesh, const PackingLimits& limits, Monitor& monitor) {
-  const auto facets = kernels::gather_facets(executor, mesh.positions, mesh.triangles);
-  const Box3f box_f = bounding_box(mesh);
-  const Box3d box{to_double(box_f.lower), to_double(box_f.upper)};
-  const auto winding = kernels::build_winding_index(executor, facets.view(), box);
-  const auto grid =
-      kernels::build_facet_grid(executor, facets.view(), grid_for(box, mesh.triangles.size(), limits));
-  monitor.progress(0.3);
-  monitor.check_interrupted();
-  kernels::HexagonalResult result =
-      kernels::pack_hexagonal(executor, winding.view, grid.view, parameters_for(box, limits));
-  monitor.progress(1.0);
-  monitor.check_interrupted();
+kernels::HexagonalInput input_for(const Mesh& mesh, const PackingLimits& limits, Monitor& monitor) {
+  const Box3f box = bounding_box(mesh);
+  kernels::HexagonalInput input;
+  input.positions = mesh.positions;
+  input.triangles = mesh.triangles;
+  input.box = {to_double(box.lower), to_double(box.upper)};
+  input.grid = grid_for(input.box, mesh.triangles.size(), limits);
+  input.parameters = parameters_for(input.box, limits);
+  input.progress = [&monitor](double share) {
+    monitor.progress(share);
+    monitor.check_interrupted();
+  };
+  return input;
+}
 
+// Seconds for a facet to be indexed and for a place to be tested, on one thread of a CPU (docs/cuda.md).
+WorkEstimate estimate_work(const kernels::HexagonalInput& input) {
+  constexpr double kSecondsPerFacet = 0.6e-6;
+  constexpr double kSecondsPerPlace = 0.5e-6;
+  const auto facets = static_cast<double>(input.triangles.size());
+  const auto places = static_cast<double>(
+      kernels::make_hexagonal_lattice(input.box, input.parameters.lattice_radius).cell_count() *
+      (kernels::kLatticePerCell + kernels::kIntersticesPerCell + kernels::kTetrahedralPerCell));
+  return {facets * kSecondsPerFacet + places * kSecondsPerPlace,
+          facets * (sizeof(Triangle) + sizeof(Vec3f)) + places * sizeof(Sphere)};
+}
+
+Packing packing_of(kernels::HexagonalResult result, const PackingLimits& limits) {
   const auto count = [&](CandidateState state) {
     return static_cast<std::size_t>(result.state_counts[static_cast<std::size_t>(state)]);
   };
@@ -72,7 +87,7 @@ Packing pack(const Executor& executor, const Mesh& mesh, const PackingLimits& li
   packing.statistics.candidates = packing.statistics.outside + packing.statistics.overlapped_region +
                                   packing.statistics.near_surface + packing.statistics.below_min_radius +
                                   result.spheres.size();
-  packing.statistics.index_bytes = winding.bytes() + grid.bytes();
+  packing.statistics.index_bytes = result.index_bytes;
   packing.spheres = std::move(result.spheres);
   return packing;
 }
@@ -99,18 +114,30 @@ double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits) {
   constexpr double kIndexBytesPerFacet = sizeof(kernels::Facet) + 12 * sizeof(std::uint32_t) + 8 * 8;
   constexpr double kLeastIndexBytes = 16777216;
   const double index_bytes = facets * kIndexBytesPerFacet + kLeastIndexBytes;
+  const double slab = std::min(std::max(places, replaced), static_cast<double>(kernels::kMostSlots));
   // Of all places at most about three in four lie inside a box-filling model and are emitted (twice, while
   // they are copied).
-  return index_bytes + std::max(places, replaced) * static_cast<double>(kernels::kBytesPerCandidate) +
+  return index_bytes + slab * static_cast<double>(kernels::kBytesPerSlot) +
          (10 * cells + replaced) * 2 * sizeof(Sphere);
 }
 
-Packing pack_hexagonal(const Mesh& mesh, const PackingLimits& limits, Monitor& monitor, CpuThreads threads) {
+Packing pack_hexagonal(const Mesh& mesh, const PackingLimits& limits, Monitor& monitor,
+                       const DeviceRequest& device) {
   if (!std::isfinite(estimate_hexagonal_bytes(mesh, limits))) {
     throw FailureError("the hexagonal packing would have more than 2^32 places", "raise --max-radius");
   }
-  return threads == CpuThreads::one ? pack(kernels::SerialExecutor{}, mesh, limits, monitor)
-                                    : pack(kernels::TbbExecutor{}, mesh, limits, monitor);
+  const kernels::HexagonalInput input = input_for(mesh, limits, monitor);
+  DeviceUse use;
+  const auto on_cpu = [&](DeviceRequest::Kind kind) {
+    return kind == DeviceRequest::Kind::cpu_one_thread
+               ? kernels::pack_hexagonal(kernels::SerialExecutor{}, input)
+               : kernels::pack_hexagonal(kernels::TbbExecutor{}, input);
+  };
+  const auto on_cuda = [&](int index) { return kernels::pack_hexagonal_on_cuda(index, input); };
+  Packing packing =
+      packing_of(run_on_device(device, estimate_work(input), monitor, use, on_cpu, on_cuda), limits);
+  packing.device = std::move(use);
+  return packing;
 }
 
 }  // namespace aerate

@@ -48,13 +48,13 @@ std::vector<Sphere> pack_by_brute_force(const Mesh& mesh, const PackingLimits& l
       kept.push_back({c, radius_of(kernels::kInterstice), SphereKind::interstice});
     }
   };
-  for (std::size_t i = 0; i < lattice.cell_count() * kernels::kLatticePerCell; ++i) {
+  for (std::uint32_t i = 0; i < lattice.cell_count() * kernels::kLatticePerCell; ++i) {
     try_place(lattice.lattice_position(i), 1.0, SphereKind::lattice);
   }
-  for (std::size_t i = 0; i < lattice.cell_count() * kernels::kIntersticesPerCell; ++i) {
+  for (std::uint32_t i = 0; i < lattice.cell_count() * kernels::kIntersticesPerCell; ++i) {
     try_place(lattice.interstice_position(i), kernels::kInterstice, SphereKind::interstice);
   }
-  for (std::size_t i = 0; i < lattice.cell_count() * kernels::kTetrahedralPerCell; ++i) {
+  for (std::uint32_t i = 0; i < lattice.cell_count() * kernels::kTetrahedralPerCell; ++i) {
     try_place(lattice.tetrahedral_position(i), kernels::kTetrahedral, SphereKind::tetrahedral);
   }
   for (const Vec3d& c : replaced) {
@@ -178,8 +178,9 @@ TEST(Hexagonal, IsTheSameOnOneThreadAndOnAll) {
   const Mesh torus = test::make_torus(5, 2, 200, 100);
   Monitor monitor;
   const PackingLimits limits{0.1, 0.05, 0.01, 0.3};
-  const Packing serial = pack_hexagonal(torus, limits, monitor, CpuThreads::one);
-  const Packing parallel = pack_hexagonal(torus, limits, monitor, CpuThreads::all);
+  const Packing serial =
+      pack_hexagonal(torus, limits, monitor, {.kind = DeviceRequest::Kind::cpu_one_thread});
+  const Packing parallel = pack_hexagonal(torus, limits, monitor, {.kind = DeviceRequest::Kind::cpu});
   ASSERT_GT(serial.spheres.size(), 1000U);
   expect_same_spheres(serial.spheres, parallel.spheres, 0.0);
 }
