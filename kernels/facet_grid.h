@@ -76,7 +76,7 @@ struct FacetGridView {
 
   AERATE_HD bool any_nearer(Vec3d p, double distance_squared, std::uint32_t begin, std::uint32_t end) const {
     for (std::uint32_t i = begin; i < end; ++i) {
-      if (distance_squared_to_facet(p, facets[references[i]]) < distance_squared) return true;
+      if (is_facet_nearer(p, facets[references[i]], distance_squared)) return true;
     }
     return false;
   }

@@ -38,4 +38,25 @@ AERATE_HD inline double distance_squared_to_facet(Vec3d p, const Facet& facet) {
   return nearest;
 }
 
+// Is the triangle nearer to p than sqrt(limit_squared)? As `distance_squared_to_facet` says, but most
+// triangles are decided by a corner, or by a ball about them or the distance of their plane, which are so far
+// off that rounding is no matter.
+AERATE_HD inline bool is_facet_nearer(Vec3d p, const Facet& facet, double limit_squared) {
+  constexpr double kSurely = 1 + 1e-9;
+  const Vec3d a = to_double(facet.a);
+  const Vec3d from_a = p - a;
+  const double corner_squared = length_squared(from_a);
+  if (corner_squared < limit_squared) return true;
+  const Vec3d ab = to_double(facet.b) - a;
+  const Vec3d ac = to_double(facet.c) - a;
+  const double extent_squared = max_of(length_squared(ab), length_squared(ac));
+  // |p - a| >= limit + extent, without roots.
+  const double beyond = corner_squared - (limit_squared + extent_squared) * kSurely;
+  if (beyond > 0 && beyond * beyond > 4 * kSurely * limit_squared * extent_squared) return false;
+  const Vec3d normal = cross(ab, ac);
+  const double height = dot(normal, from_a);
+  if (height * height > kSurely * limit_squared * length_squared(normal)) return false;
+  return distance_squared_to_facet(p, facet) < limit_squared;
+}
+
 }  // namespace aerate::kernels

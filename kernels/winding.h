@@ -31,30 +31,30 @@ AERATE_HD inline bool is_left_of(Vec3d a, Vec3d b, double x, double y) {
   return left != swapped;
 }
 
-// Contribution of a projected edge to the 2-D winding number of (x, y): half-open in y, so that a vertex
-// belongs to one of its edges only.
-AERATE_HD inline int edge_crossing(Vec3d a, Vec3d b, double x, double y) {
-  const bool a_below = a.y <= y;
-  const bool b_below = b.y <= y;
-  if (a_below == b_below) return 0;
-  const bool left = is_left_of(a, b, x, y);
-  if (a_below) return left ? 1 : 0;
-  return left ? 0 : -1;
-}
-
 // +1 or -1 if the line through (x, y) along z, followed upwards, leaves or enters the solid through the
-// facet, else 0.
+// facet, else 0: the winding number of the projected facet about the point. Edges are half-open in y, so that
+// a vertex belongs to one of its edges only.
 AERATE_HD inline int line_crossing(const Facet& facet, double x, double y) {
-  const Vec3d a = to_double(facet.a);
-  const Vec3d b = to_double(facet.b);
-  const Vec3d c = to_double(facet.c);
-  return edge_crossing(a, b, x, y) + edge_crossing(b, c, x, y) + edge_crossing(c, a, x, y);
+  const bool a_below = static_cast<double>(facet.a.y) <= y;
+  const bool b_below = static_cast<double>(facet.b.y) <= y;
+  const bool c_below = static_cast<double>(facet.c.y) <= y;
+  if (a_below == b_below && b_below == c_below) return 0;
+  // Two edges pass the point's height, one up and one down, and meet in the corner that is alone on its side.
+  const bool a_alone = b_below == c_below, b_alone = a_below == c_below;
+  const Vec3f apex = a_alone ? facet.a : b_alone ? facet.b : facet.c;
+  const Vec3f next = a_alone ? facet.b : b_alone ? facet.c : facet.a;
+  const Vec3f last = a_alone ? facet.c : b_alone ? facet.a : facet.b;
+  // An edge upwards counts 1 if the point is left of it, one downwards -1 if it is not.
+  return (is_left_of(to_double(last), to_double(apex), x, y) ? 1 : 0) +
+         (is_left_of(to_double(apex), to_double(next), x, y) ? 0 : -1);
 }
 
 // The same for the ray from p in +z.
 AERATE_HD inline int facet_crossing(const Facet& facet, Vec3d p) {
   const int sign = line_crossing(facet, p.x, p.y);
   if (sign == 0) return 0;
+  if (p.z < static_cast<double>(min_of(facet.a.z, min_of(facet.b.z, facet.c.z)))) return sign;
+  if (p.z > static_cast<double>(max_of(facet.a.z, max_of(facet.b.z, facet.c.z)))) return 0;
   const Vec3d a = to_double(facet.a);
   const Vec3d b = to_double(facet.b);
   const Vec3d c = to_double(facet.c);
