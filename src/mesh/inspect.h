@@ -62,11 +62,12 @@ struct Inspection {
 // O(m) expected in the triangles; the same result for any number of threads.
 Inspection inspect(const Mesh& mesh);
 
-// Number of pairs of triangles that intersect other than along shared edges or vertices, found with CGAL
-// (exact predicates). Degenerate triangles are left out. Slow: seconds for a million triangles.
+// Pairs of triangles of a welded mesh that have points in common other than a vertex or edge that they share,
+// found with CGAL (exact predicates); repeated triangles are such pairs, degenerate ones are left out. Slow:
+// seconds for a million triangles.
 struct SelfIntersections {
   std::size_t pair_count = 0;
-  std::vector<Vec3d> places;  // centre of the first few pairs, mm
+  std::vector<Vec3d> places;  // centres of the first few pairs in triangle order, mm
 };
 SelfIntersections find_self_intersections(const Mesh& mesh);
 

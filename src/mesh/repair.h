@@ -14,13 +14,21 @@ struct Repaired {
   std::vector<std::string> notices;
 };
 
-// Turns shells that are inside out: an edge-connected closed shell of negative volume that no other shell
-// encloses. Cavities (inward shells inside another shell) stay. Triangles keep their order; a turned one
-// swaps its last two indices.
+// Turns single triangles so that those with a common edge of two triangles run along it in opposite
+// directions; the lesser part of a patch is turned. A shell that cannot be made consistent (like a Moebius
+// strip, or at edges of more than two triangles) stays as it is, with a notice. Triangles keep their order; a
+// turned one swaps its last two indices. Whether a shell is inside out as a whole is for `orient_outward`.
+Repaired orient_consistently(Mesh mesh);
+
+// Turns closed shells that are inside out: those that only make sense if all winding numbers change their
+// sign, such as a shell of negative volume that no other encloses, and a cavity of positive volume inside
+// one. Cavities (inward shells inside an outward one) stay. Triangles keep their order; a turned one swaps
+// its last two indices. Where open shells are to be closed, do that first.
 Repaired orient_outward(Mesh mesh);
 
-// Closes boundary loops of at most `max_diameter` mm with CGAL's hole filling. Throws MeshError, naming the
-// largest loop and where it is, if one is larger, or if a loop could not be filled.
+// Closes boundary loops of at most `max_diameter` mm with CGAL's hole filling: triangles between the vertices
+// of the loop are added at the end. Throws MeshError, naming the largest loop and where it is, if one is
+// larger, or if a loop could not be filled.
 Repaired fill_holes(Mesh mesh, double max_diameter);
 
 }  // namespace aerate
