@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <tbb/parallel_for.h>
@@ -21,7 +22,7 @@ constexpr double kRadiusStep = 1.05;
 constexpr Vec3d kCentreVoxels{0.37, 0.259, 0.148};
 constexpr std::size_t kLevelCount = 95;  // the last has about 1.1 million triangles
 constexpr double kLeastVolumeShare = 0.9;
-static_assert(kCoarsestRadiusVoxels > kSmallestBallRadiusVoxels);
+static_assert(kCoarsestRadiusVoxels >= LevelSet::kSmallestRadiusVoxels);
 
 // Sagitta of a relaxed template times its squared radius in voxels, as measured: 0.145..0.18 over the ladder.
 constexpr double kTypicalSagitta = 0.15;
@@ -219,6 +220,18 @@ double allowed_sagitta(const Sphere& ball, double tolerance) {
   return (tolerance - 2 * rounding_margin(ball)) / ball.radius;
 }
 
+// Scales and moves a template into its place in a mesh, turned inside out.
+void place_void(const BallTemplate& ball_template, const Sphere& ball, const ShellRange& range, Mesh& mesh) {
+  const double radius = ball.radius - rounding_margin(ball);
+  Vec3f* position = mesh.positions.data() + range.first_vertex;
+  for (const Vec3d& direction : ball_template.directions) {
+    *position++ = to_float(ball.centre + direction * radius);
+  }
+  const auto first = static_cast<std::uint32_t>(range.first_vertex);
+  Triangle* triangle = mesh.triangles.data() + range.first_triangle;
+  for (const Triangle& t : ball_template.triangles) *triangle++ = {t[0] + first, t[2] + first, t[1] + first};
+}
+
 double radius_voxels(std::size_t level) {
   return kCoarsestRadiusVoxels * std::pow(kRadiusStep, static_cast<double>(level));
 }
@@ -261,16 +274,48 @@ double rounding_margin(const Sphere& ball) {
   return std::ldexp(largest_coordinate(ball), -23);
 }
 
-void place_void(const BallTemplate& ball_template, const Sphere& ball, const ShellPlace& place) {
-  assert(place.positions.size() == ball_template.directions.size());
-  assert(place.triangles.size() == ball_template.triangles.size());
-  const double radius = ball.radius - rounding_margin(ball);
-  std::transform(ball_template.directions.begin(), ball_template.directions.end(), place.positions.begin(),
-                 [&](Vec3d direction) { return to_float(ball.centre + direction * radius); });
-  std::transform(ball_template.triangles.begin(), ball_template.triangles.end(), place.triangles.begin(),
-                 [first = place.first_vertex](const Triangle& t) {
-                   return Triangle{t[0] + first, t[2] + first, t[1] + first};
-                 });
+void check_resolvable(const Sphere& ball, double tolerance) {
+  const double margin = rounding_margin(ball);
+  if (tolerance >= kMarginsPerTolerance * margin && ball.radius >= kMarginsPerRadius * margin) return;
+  throw FailureError("a void of radius " + std::to_string(ball.radius) + " mm at coordinates up to " +
+                         std::to_string(largest_coordinate(ball)) +
+                         " mm cannot be kept within a tolerance of " + std::to_string(tolerance) +
+                         " mm: coordinates in a mesh file are single precision",
+                     "move the model nearer to the origin, or raise --tolerance");
+}
+
+bool suits(const BallTemplate& ball_template, const Sphere& ball, double tolerance) {
+  const double shrunk = 1 - rounding_margin(ball) / ball.radius;
+  return ball_template.sagitta <= allowed_sagitta(ball, tolerance) &&
+         ball_template.volume_share * shrunk * shrunk * shrunk >= kLeastVolumeShare;
+}
+
+Solid assemble(Mesh outer, std::span<const Sphere> balls, std::span<const BallTemplate* const> templates) {
+  assert(balls.size() == templates.size());
+  Solid solid;
+  solid.outer_triangle_count = outer.triangles.size();
+  solid.outer_vertex_count = outer.positions.size();
+  solid.void_shells.reserve(templates.size());
+  ShellRange range{solid.outer_triangle_count, 0, solid.outer_vertex_count, 0};
+  for (const BallTemplate* ball_template : templates) {
+    range.triangle_count = ball_template->triangles.size();
+    range.vertex_count = ball_template->directions.size();
+    solid.void_shells.push_back(range);
+    range.first_triangle += range.triangle_count;
+    range.first_vertex += range.vertex_count;
+  }
+  if (range.first_vertex > std::numeric_limits<std::uint32_t>::max()) {
+    throw FailureError("the voids would take " + std::to_string(range.first_triangle) + " triangles",
+                       "raise --tolerance, or set --max-triangles");
+  }
+
+  solid.mesh = std::move(outer);
+  solid.mesh.positions.resize(range.first_vertex);
+  solid.mesh.triangles.resize(range.first_triangle);
+  tbb::parallel_for(std::size_t{0}, templates.size(), [&](std::size_t i) {
+    place_void(*templates[i], balls[i], solid.void_shells[i], solid.mesh);
+  });
+  return solid;
 }
 
 BallLadder::BallLadder() : levels_(kLevelCount) {}
@@ -280,7 +325,7 @@ const BallLadder::Level& BallLadder::make(std::size_t level) {
   if (!levels_[level]) {
     auto made = std::make_unique<Level>();
     made->ball =
-        project_onto_ball(mesh_level_set_of_ball(kCentreVoxels, radius_voxels(level)), kCentreVoxels);
+        project_onto_ball(LevelSet::of_ball(kCentreVoxels, radius_voxels(level), 1).surface(), kCentreVoxels);
     if (made->ball) made->ball = relax(std::move(*made->ball));
     levels_[level] = std::move(made);
   }
@@ -288,19 +333,10 @@ const BallLadder::Level& BallLadder::make(std::size_t level) {
 }
 
 std::size_t BallLadder::level_for(const Sphere& ball, double tolerance) {
-  const double margin = rounding_margin(ball);
-  if (!(tolerance >= kMarginsPerTolerance * margin) || !(ball.radius >= kMarginsPerRadius * margin)) {
-    throw FailureError("a void of radius " + std::to_string(ball.radius) + " mm at coordinates up to " +
-                           std::to_string(largest_coordinate(ball)) +
-                           " mm cannot be kept within a tolerance of " + std::to_string(tolerance) +
-                           " mm: coordinates in a mesh file are single precision",
-                       "move the model nearer to the origin, or raise --tolerance");
-  }
-  const double sagitta = allowed_sagitta(ball, tolerance);
-  const double volume_share = kLeastVolumeShare / std::pow(1 - margin / ball.radius, 3);
-  for (std::size_t level = likely_level(sagitta); level < kLevelCount; ++level) {
+  check_resolvable(ball, tolerance);
+  for (std::size_t level = likely_level(allowed_sagitta(ball, tolerance)); level < kLevelCount; ++level) {
     const std::optional<BallTemplate>& made = make(level).ball;
-    if (made && made->sagitta <= sagitta && made->volume_share >= volume_share) return level;
+    if (made && suits(*made, ball, tolerance)) return level;
   }
   throw FailureError("a void of radius " + std::to_string(ball.radius) + " mm at a tolerance of " +
                          std::to_string(tolerance) + " mm needs more than a million triangles",

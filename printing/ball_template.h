@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/solid.h"
 #include "kernels/sphere.h"
 
 // How the balls of a plan become shells: triangulations of the unit sphere, made once from a level set and
@@ -38,16 +39,16 @@ std::optional<BallTemplate> relax(BallTemplate ball);
 // most sqrt(3) 2^-24 M < 2^-23 M; what is left covers the rounding of the fp64 arithmetic.
 double rounding_margin(const Sphere& ball);
 
-// Where one shell goes in a mesh.
-struct ShellPlace {
-  std::span<Vec3f> positions;      // as many as the template's directions
-  std::span<Triangle> triangles;   // as many as the template's triangles
-  std::uint32_t first_vertex = 0;  // index of positions[0] in its mesh
-};
+// Throws FailureError if fp32 cannot hold the ball's surface within `tolerance` mm where it is.
+void check_resolvable(const Sphere& ball, double tolerance);
 
-// The ball's surface, facing inward (a void), by a template. All of it lies within the ball, at most
-// `radius * sagitta + 2 * rounding_margin` deep.
-void place_void(const BallTemplate& ball_template, const Sphere& ball, const ShellPlace& place);
+// Does the template keep the ball's surface within `tolerance` mm of the sphere, and its volume above 90 %?
+bool suits(const BallTemplate& ball_template, const Sphere& ball, double tolerance);
+
+// The outer surface and the balls' as voids, facing inward, by a template for each. All of a void's surface
+// lies within its ball, at most `radius * sagitta + 2 * rounding_margin` deep. Throws FailureError for more
+// vertices than 32 bits can count.
+Solid assemble(Mesh outer, std::span<const Sphere> balls, std::span<const BallTemplate* const> templates);
 
 // Templates of increasing refinement, each made when it is first asked for: OpenVDB level sets of balls whose
 // radius grows from level to level by 5 %, measured in voxels.
@@ -56,9 +57,8 @@ class BallLadder {
   BallLadder();
   ~BallLadder();
 
-  // The first level, and so about the coarsest, that keeps the surface of a ball within `tolerance` mm of the
-  // sphere and its volume above 90 %. Throws FailureError if fp32 cannot hold it so exactly at its place, or
-  // if that took more than about a million triangles.
+  // The first level, and so about the coarsest, that suits the ball. Throws as `check_resolvable`, and
+  // FailureError if that took more than about a million triangles.
   std::size_t level_for(const Sphere& ball, double tolerance);
 
   // Makes the levels that `level_for` will probably ask for, in parallel.

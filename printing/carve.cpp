@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
-#include <tbb/parallel_for.h>
 #include <vector>
 
-#include "core/error.h"
 #include "printing/ball_template.h"
 
 namespace aerate {
@@ -38,34 +34,10 @@ Solid carve_keeping_surface(Mesh outer, const VoidPlan& plan, const CarveOptions
   const std::vector<std::size_t> levels = choose_levels(ladder, plan, options.tolerance);
   monitor.check_interrupted();
 
-  Solid solid;
-  solid.outer_triangle_count = outer.triangles.size();
-  solid.outer_vertex_count = outer.positions.size();
-  solid.void_shells.reserve(levels.size());
-  ShellRange range{solid.outer_triangle_count, 0, solid.outer_vertex_count, 0};
-  for (const std::size_t level : levels) {
-    range.triangle_count = ladder[level].triangles.size();
-    range.vertex_count = ladder[level].directions.size();
-    solid.void_shells.push_back(range);
-    range.first_triangle += range.triangle_count;
-    range.first_vertex += range.vertex_count;
-  }
-  if (range.first_vertex > std::numeric_limits<std::uint32_t>::max()) {
-    throw FailureError("the voids would take " + std::to_string(range.first_triangle) + " triangles",
-                       "raise --tolerance, or set --max-triangles");
-  }
-
-  solid.mesh = std::move(outer);
-  solid.mesh.positions.resize(range.first_vertex);
-  solid.mesh.triangles.resize(range.first_triangle);
-  tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t i) {
-    const ShellRange& shell = solid.void_shells[i];
-    place_void(ladder[levels[i]], plan.spheres[i],
-               {std::span(solid.mesh.positions).subspan(shell.first_vertex, shell.vertex_count),
-                std::span(solid.mesh.triangles).subspan(shell.first_triangle, shell.triangle_count),
-                static_cast<std::uint32_t>(shell.first_vertex)});
-  });
-  return solid;
+  std::vector<const BallTemplate*> templates;
+  templates.reserve(levels.size());
+  for (const std::size_t level : levels) templates.push_back(&ladder[level]);
+  return assemble(std::move(outer), plan.spheres, templates);
 }
 
 std::size_t estimate_void_triangles(const VoidPlan& plan, const CarveOptions& options) {

@@ -1,17 +1,55 @@
 #pragma once
 
+#include <memory>
+#include <span>
+
 #include "core/mesh.h"
+#include "core/monitor.h"
+#include "kernels/sphere.h"
 
 namespace aerate {
 
-// Meshes of OpenVDB level sets, without OpenVDB's types.
+// An OpenVDB narrow-band level set, negative inside, without OpenVDB's types. Voxel centres lie at whole
+// multiples of the voxel size; the band reaches three voxels to either side of the surface.
+class LevelSet {
+ public:
+  // OpenVDB silently leaves out balls whose radius is below 1.5 voxels; no function here makes one so small.
+  static constexpr double kSmallestRadiusVoxels = 1.6;
 
-// The smallest ball that a level set can hold, voxels: OpenVDB makes an empty one below that.
-constexpr double kSmallestBallRadiusVoxels = 1.5;
+  // How the inside of a mesh is told from its outside.
+  enum class Interior {
+    // What cannot be reached from outside without crossing the surface. Closes cracks that are thinner than
+    // the voxels, and fills cavities.
+    enclosed,
+    // Where the winding number is not 0. Keeps cavities, and what is left of cracks.
+    wound,
+  };
 
-// The zero set of a ball's level set, by dual contouring; everything in units of the voxel edge, with voxel
-// centres at whole coordinates. Outward; quads are split anyhow. Closed, but the caller who relies on more
-// checks it. Precondition: radius > kSmallestBallRadiusVoxels.
-Mesh mesh_level_set_of_ball(Vec3d centre, double radius);
+  // `mesh` must be closed. The monitor is asked now and then on the calling thread.
+  static LevelSet of_solid(const Mesh& mesh, double voxel_size, Interior interior, Monitor& monitor);
+
+  // Precondition: every radius >= kSmallestRadiusVoxels * voxel_size.
+  static LevelSet of_ball(Vec3d centre, double radius, double voxel_size);
+  static LevelSet of_balls(std::span<const Sphere> balls, double voxel_size);
+
+  ~LevelSet();
+  LevelSet(LevelSet&&) noexcept;
+  LevelSet& operator=(LevelSet&&) noexcept;
+
+  // This without what is inside `other`. Precondition: both have the same voxel size.
+  LevelSet minus(const LevelSet& other) const;
+
+  // The zero set by dual contouring, outward: closed and 2-manifold, quads split along their shorter
+  // diagonal.
+  Mesh surface() const;
+
+  std::size_t bytes() const;
+
+ private:
+  struct Grid;
+  explicit LevelSet(std::unique_ptr<Grid> grid);
+
+  std::unique_ptr<Grid> grid_;
+};
 
 }  // namespace aerate

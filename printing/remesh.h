@@ -14,24 +14,33 @@ namespace aerate {
 // A model as an OpenVDB level set. Hides OpenVDB from whoever includes this.
 class ModelLevelSet {
  public:
-  // Voxel edge in mm. The sign comes from the winding number of `mesh`, so that overlapping parts are united
-  // and cavities stay. `mesh` must be closed (fill its holes first). Throws FailureError when the level set
-  // would need more than `max_bytes`.
+  // Voxel edge in mm. `mesh` must be closed (fill its holes first). What is inside is told by flood filling
+  // for a mesh of one shell, so that cracks thinner than a voxel close instead of breaking up; by the winding
+  // number for several shells, so that overlapping parts are united and cavities stay. Of several shells
+  // those that voxels cannot hold are left out: cavities smaller than a ball of 1.6 voxels radius, and crumbs
+  // smaller than a voxel. Throws FailureError, before the work, when it would need more than `max_bytes`, and
+  // when nothing of the model is left at this voxel size; InterruptedError.
   ModelLevelSet(const Mesh& mesh, double voxel_size, double max_bytes, Monitor& monitor);
   ~ModelLevelSet();
   ModelLevelSet(ModelLevelSet&&) noexcept;
   ModelLevelSet& operator=(ModelLevelSet&&) noexcept;
 
+  // What the constructor reckons with, from the surface area alone: about the peak of its own memory.
+  static double estimated_bytes(const Mesh& mesh, double voxel_size);
+
   double voxel_size() const;
-  double bytes() const;
+  double bytes() const;  // of the level set and its surface, as they are
 
   // The zero set as a closed mesh: what the model becomes when it is remeshed. Packing is done against this
   // one, so that walls hold in the result.
   Mesh surface() const;
 
-  // csgDifference(model, voids), meshed as a whole: outer surface and void shells. Vertices of void shells
-  // are projected onto the planned shapes. Throws FailureError if voids run together at this voxel size (gap
-  // too small for it), naming the size that would do.
+  // csgDifference(model, voids), meshed as a whole and split into shells: the outer ones are `surface()`, and
+  // each void's is found again as that of its sphere. Its vertices are then projected onto the planned sphere
+  // (within the tolerance, and inside, as in `carve_keeping_surface`). Where the voxels are too coarse for
+  // the tolerance the void's shell is made as `carve_keeping_surface` does, with a notice. Throws
+  // FailureError, naming the voxel size that would do, for a sphere that the voxels cannot hold and for voids
+  // that run together or into the surface at this voxel size; InterruptedError.
   Solid subtract(const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) const;
 
  private:

@@ -1,0 +1,249 @@
+#include "printing/remesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+#include "core/error.h"
+#include "printing/ball_template.h"
+#include "printing/level_set.h"
+#include "printing/shells.h"
+
+namespace aerate {
+namespace {
+
+// Peak memory for each h x h of the model's surface, h being the voxel edge, and for each of its triangles.
+constexpr double kBytesPerSurfaceVoxel = 400;
+constexpr double kBytesPerTriangle = 100;
+
+// A void whose surface has this many voxels across cannot be mistaken for noise.
+constexpr double kSmallestVoidRadiusVoxels = 2;
+static_assert(kSmallestVoidRadiusVoxels >= LevelSet::kSmallestRadiusVoxels);
+
+std::string to_text(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+std::string to_text(Vec3d p) {
+  return "(" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + ") mm";
+}
+
+// Two digits, rounded to the safe side.
+double rounded_up(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::ceil(value / unit) * unit;
+}
+double rounded_down(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::floor(value / unit) * unit;
+}
+
+void append(Mesh& mesh, const Mesh& shell) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), shell.positions.begin(), shell.positions.end());
+  for (const Triangle& t : shell.triangles) {
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+}
+
+// What sampling by voxels leaves of cracks and slivers.
+bool is_noise(const Mesh& shell, double voxel_size) {
+  constexpr double kSmallestCavity = 4.0 / 3.0 * std::numbers::pi * LevelSet::kSmallestRadiusVoxels *
+                                     LevelSet::kSmallestRadiusVoxels * LevelSet::kSmallestRadiusVoxels;
+  const double volume = signed_volume(shell) / (voxel_size * voxel_size * voxel_size);
+  return volume > -kSmallestCavity && volume < 1;
+}
+
+// A shell that a ball left in a level set, still seen as part of the solid: facing inward.
+struct VoidShell {
+  Mesh surface;
+  Vec3d centre;
+};
+
+// Mean of the vertices; of a ball's surface within a fraction of a voxel of its centre.
+Vec3d mean_position(const Mesh& mesh) {
+  Vec3d sum{0, 0, 0};
+  for (const Vec3f& p : mesh.positions) sum = sum + to_double(p);
+  return sum * (1.0 / static_cast<double>(mesh.positions.size()));
+}
+
+// For each sphere its shell, if there is one whose mean lies within half a voxel of the sphere's centre and
+// that reaches as far as the sphere does, give or take a voxel.
+std::vector<const VoidShell*> find_shells(std::span<const Sphere> spheres,
+                                          const std::vector<VoidShell>& shells_by_x, double voxel_size) {
+  std::vector<const VoidShell*> found(spheres.size());
+  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+    const Sphere& sphere = spheres[i];
+    const double reach = voxel_size / 2;
+    auto shell = std::lower_bound(shells_by_x.begin(), shells_by_x.end(), sphere.centre.x - reach,
+                                  [](const VoidShell& s, double x) { return s.centre.x < x; });
+    for (; shell != shells_by_x.end() && shell->centre.x <= sphere.centre.x + reach; ++shell) {
+      if (length(shell->centre - sphere.centre) > reach) continue;
+      const bool fits =
+          std::all_of(shell->surface.positions.begin(), shell->surface.positions.end(), [&](const Vec3f& p) {
+            return std::abs(length(to_double(p) - sphere.centre) - sphere.radius) <= voxel_size;
+          });
+      if (fits) found[i] = &*shell;
+    }
+  });
+  return found;
+}
+
+FailureError too_much_memory(const Mesh& mesh, double voxel_size, double bytes, double max_bytes) {
+  const auto mebibytes = [](double b) { return to_text(std::ceil(b / (1024.0 * 1024.0))) + " MiB"; };
+  const double for_voxels = max_bytes - kBytesPerTriangle * static_cast<double>(mesh.triangles.size());
+  const double would_do = std::sqrt(kBytesPerSurfaceVoxel * surface_area(mesh) / for_voxels);
+  return FailureError("remeshing at a voxel size of " + to_text(voxel_size) + " mm would need about " +
+                          mebibytes(bytes) + " of memory, more than the " + mebibytes(max_bytes) +
+                          " there are for it",
+                      for_voxels > 0 ? "use --voxel " + to_text(rounded_up(would_do)) + " or more"
+                                     : std::string("use a model of fewer triangles"));
+}
+
+FailureError too_small_for_voxels(const VoidPlan& plan, double voxel_size) {
+  double smallest = std::numeric_limits<double>::max();
+  std::size_t count = 0;
+  for (const Sphere& sphere : plan.spheres) {
+    smallest = std::min(smallest, sphere.radius);
+    if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size) ++count;
+  }
+  return FailureError(std::to_string(count) + " of " + std::to_string(plan.spheres.size()) +
+                          " voids are too small for a voxel size of " + to_text(voxel_size) +
+                          " mm: the smallest has a radius of " + to_text(smallest) + " mm",
+                      "use --voxel " + to_text(rounded_down(smallest / kSmallestVoidRadiusVoxels)) +
+                          " or less, or raise --min-radius");
+}
+
+// The void of sphere `lost` has no shell of its own.
+FailureError runs_together(const VoidPlan& plan, std::size_t lost, double voxel_size) {
+  const Sphere& sphere = plan.spheres[lost];
+  double gap = std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < plan.spheres.size(); ++i) {
+    if (i == lost) continue;
+    const Sphere& other = plan.spheres[i];
+    gap = std::min(gap, length(other.centre - sphere.centre) - other.radius - sphere.radius);
+  }
+  const bool neighbour_is_near = gap < 2 * voxel_size;
+  const double voxel_wanted = neighbour_is_near ? std::max(gap, 0.0) / 2 : voxel_size / 2;
+  return FailureError("the void at " + to_text(sphere.centre) + " runs " +
+                          (neighbour_is_near ? "together with its neighbour, " + to_text(gap) + " mm away,"
+                                             : std::string("into the surface")) +
+                          " at a voxel size of " + to_text(voxel_size) + " mm",
+                      voxel_wanted > 0 ? "use --voxel " + to_text(rounded_down(voxel_wanted)) + " or less"
+                                       : std::string("raise --gap"));
+}
+
+}  // namespace
+
+struct ModelLevelSet::Impl {
+  LevelSet level_set;
+  double voxel_size;
+  Mesh surface;
+};
+
+ModelLevelSet::ModelLevelSet(const Mesh& mesh, double voxel_size, double max_bytes, Monitor& monitor) {
+  const double bytes = estimated_bytes(mesh, voxel_size);
+  if (!(bytes <= max_bytes)) throw too_much_memory(mesh, voxel_size, bytes, max_bytes);
+  const bool one_shell = count_shells(mesh) == 1;
+  const auto interior = one_shell ? LevelSet::Interior::enclosed : LevelSet::Interior::wound;
+  LevelSet level_set = LevelSet::of_solid(mesh, voxel_size, interior, monitor);
+  Mesh surface;
+  for (const Mesh& shell : split_into_shells(level_set.surface())) {
+    if (one_shell || !is_noise(shell, voxel_size)) append(surface, shell);
+  }
+  if (surface.triangles.empty()) {
+    throw FailureError("nothing is left of the model at a voxel size of " + to_text(voxel_size) + " mm",
+                       "use a smaller --voxel");
+  }
+  monitor.check_interrupted();
+  impl_ = std::make_unique<Impl>(Impl{std::move(level_set), voxel_size, std::move(surface)});
+}
+
+ModelLevelSet::~ModelLevelSet() = default;
+ModelLevelSet::ModelLevelSet(ModelLevelSet&&) noexcept = default;
+ModelLevelSet& ModelLevelSet::operator=(ModelLevelSet&&) noexcept = default;
+
+double ModelLevelSet::estimated_bytes(const Mesh& mesh, double voxel_size) {
+  return kBytesPerSurfaceVoxel * surface_area(mesh) / (voxel_size * voxel_size) +
+         kBytesPerTriangle * static_cast<double>(mesh.triangles.size());
+}
+
+double ModelLevelSet::voxel_size() const {
+  return impl_->voxel_size;
+}
+
+double ModelLevelSet::bytes() const {
+  return static_cast<double>(impl_->level_set.bytes() + impl_->surface.positions.size() * sizeof(Vec3f) +
+                             impl_->surface.triangles.size() * sizeof(Triangle));
+}
+
+Mesh ModelLevelSet::surface() const {
+  return impl_->surface;
+}
+
+Solid ModelLevelSet::subtract(const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) const {
+  const double voxel_size = impl_->voxel_size;
+  for (const Sphere& sphere : plan.spheres) {
+    check_resolvable(sphere, options.tolerance);
+    if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size) throw too_small_for_voxels(plan, voxel_size);
+  }
+
+  std::vector<VoidShell> shells;
+  {
+    const LevelSet voids = LevelSet::of_balls(plan.spheres, voxel_size);
+    monitor.check_interrupted();
+    const LevelSet cut = impl_->level_set.minus(voids);
+    monitor.check_interrupted();
+    for (Mesh& shell : split_into_shells(cut.surface())) {
+      const Vec3d centre = mean_position(shell);
+      if (signed_volume(shell) < 0) shells.push_back({std::move(shell), centre});
+    }
+  }
+  std::stable_sort(shells.begin(), shells.end(),
+                   [](const VoidShell& a, const VoidShell& b) { return a.centre.x < b.centre.x; });
+  monitor.check_interrupted();
+
+  const std::vector<const VoidShell*> found = find_shells(plan.spheres, shells, voxel_size);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i] == nullptr) throw runs_together(plan, i, voxel_size);
+  }
+
+  std::vector<std::optional<BallTemplate>> projected(found.size());
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+    Mesh outward = found[i]->surface;
+    for (Triangle& t : outward.triangles) std::swap(t[1], t[2]);
+    projected[i] = project_onto_ball(outward, plan.spheres[i].centre);
+    if (projected[i] && !suits(*projected[i], plan.spheres[i], options.tolerance)) projected[i].reset();
+  });
+  monitor.check_interrupted();
+
+  BallLadder ladder;
+  std::vector<const BallTemplate*> templates;
+  std::size_t refined = 0;
+  for (std::size_t i = 0; i < projected.size(); ++i) {
+    if (!projected[i]) {
+      ++refined;
+      ladder.level_for(plan.spheres[i], options.tolerance);
+    }
+  }
+  for (std::size_t i = 0; i < projected.size(); ++i) {
+    templates.push_back(projected[i] ? &*projected[i]
+                                     : &ladder[ladder.level_for(plan.spheres[i], options.tolerance)]);
+  }
+  if (refined > 0) {
+    monitor.notice(std::to_string(refined) + " of " + std::to_string(plan.spheres.size()) +
+                   " voids were meshed finer than the voxels, to keep the tolerance");
+  }
+  return assemble(impl_->surface, plan.spheres, templates);
+}
+
+}  // namespace aerate
