@@ -28,4 +28,22 @@ AERATE_HD inline std::uint64_t atomic_add(std::uint64_t& counter, std::uint64_t 
 #endif
 }
 
+// Stores a value and returns the one before.
+AERATE_HD inline std::uint32_t atomic_exchange(std::uint32_t& place, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicExch(&place, value);
+#else
+  return std::atomic_ref<std::uint32_t>(place).exchange(value, std::memory_order_relaxed);
+#endif
+}
+
+// Reads a place that other threads may be writing to.
+AERATE_HD inline std::uint32_t atomic_load(std::uint32_t& place) {
+#if defined(__CUDA_ARCH__)
+  return *static_cast<volatile std::uint32_t*>(&place);
+#else
+  return std::atomic_ref<std::uint32_t>(place).load(std::memory_order_relaxed);
+#endif
+}
+
 }  // namespace aerate::kernels

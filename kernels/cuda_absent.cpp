@@ -1,3 +1,4 @@
+#include "kernels/adaptive_cuda.h"
 #include "kernels/cuda_device.h"
 #include "kernels/hexagonal_cuda.h"
 
@@ -14,6 +15,10 @@ CudaDevices find_cuda_devices() {
 }
 
 HexagonalResult pack_hexagonal_on_cuda(int /*device*/, const HexagonalInput& /*input*/) {
+  throw CudaError(CudaError::Kind::no_device, "this build has no CUDA", "run on the CPU");
+}
+
+AdaptiveResult pack_adaptive_on_cuda(int /*device*/, const AdaptiveInput& /*input*/) {
   throw CudaError(CudaError::Kind::no_device, "this build has no CUDA", "run on the CPU");
 }
 

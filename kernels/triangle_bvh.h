@@ -60,7 +60,11 @@ struct TriangleBvhView {
   // Nearest facet closer than sqrt(limit_squared), which may be infinite. Of several at the same distance the
   // one that the walk meets first, which depends on p and the mesh only.
   AERATE_HD NearestFacet nearest(Vec3d p, double limit_squared) const {
-    NearestFacet best{limit_squared, kNoFacet};
+    return nearer_than(p, {limit_squared, kNoFacet});
+  }
+
+  // The same where some facet and its distance are known already: `best` if no facet is nearer.
+  AERATE_HD NearestFacet nearer_than(Vec3d p, NearestFacet best) const {
     std::uint32_t node = 1;
     // Bit k: the sibling of the ancestor k levels up is still to be visited.
     std::uint64_t pending = 0;
@@ -102,6 +106,8 @@ struct TriangleBvhView {
 
 namespace triangle_bvh_detail {
 
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 struct CurveKeys {
   View<const Facet> facets;
   CurveFrame frame;
@@ -129,7 +135,6 @@ struct LeafBoxes {
   std::uint32_t first_leaf;
 
   AERATE_HD void operator()(std::size_t leaf) const {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     Box3f box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     const std::size_t first = leaf * TriangleBvhView::kLeafFacets;
     const std::size_t last = min_of(first + TriangleBvhView::kLeafFacets, facets.size);

@@ -1,0 +1,119 @@
+#include "packing/adaptive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "kernels/adaptive_cuda.h"
+#include "kernels/adaptive_packing.h"
+#include "kernels/exec_cpu.h"
+#include "packing/run_on_device.h"
+
+namespace aerate {
+namespace {
+
+void check(const PackingLimits& limits, const AdaptiveOptions& options) {
+  const auto is_length = [](double x) { return x >= 0 && std::isfinite(x); };
+  if (!is_length(limits.wall) || !is_length(limits.gap) || !is_length(limits.min_radius)) {
+    throw UsageError("wall, gap and least radius must be lengths of 0 mm or more");
+  }
+  if (!(limits.max_radius > 0) || limits.max_radius < limits.min_radius) {
+    throw UsageError("the largest radius must be above 0 mm and not below the least radius");
+  }
+  if (!(options.target_density > 0) || options.target_density > 1) {
+    throw UsageError("the target density must be above 0 and at most 1");
+  }
+  const bool ends = limits.min_radius > 0 || options.target_density < 1 ||
+                    options.max_count < std::numeric_limits<std::size_t>::max();
+  if (!ends) {
+    throw UsageError("an adaptive packing without a least radius has no end",
+                     "give --min-radius, --max-voids or --target-density");
+  }
+}
+
+kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits,
+                                 const AdaptiveOptions& options, Monitor& monitor) {
+  const Box3f box = bounding_box(mesh);
+  kernels::AdaptiveInput input;
+  input.positions = mesh.positions;
+  input.triangles = mesh.triangles;
+  input.box = {to_double(box.lower), to_double(box.upper)};
+  input.parameters.wall = limits.wall;
+  input.parameters.gap = limits.gap;
+  input.parameters.min_radius = limits.min_radius;
+  input.parameters.max_radius = limits.max_radius;
+  input.parameters.max_count = options.max_count;
+  if (options.target_density < 1) {
+    input.parameters.max_volume = options.target_density * std::abs(signed_volume(mesh));
+  }
+  input.progress = [&monitor](double share) {
+    monitor.progress(share);
+    monitor.check_interrupted();
+  };
+  return input;
+}
+
+double most_spheres(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options) {
+  const double smallest = limits.min_radius + limits.gap / 2;
+  const auto wanted = static_cast<double>(options.max_count);
+  if (!(smallest > 0)) return wanted;
+  // The least radius is that of few at first, but of most at the end (measured on models of all kinds).
+  constexpr double kShareOfVolume = 0.4;
+  constexpr double kSphereVolume = 4.18879;
+  return std::min(wanted, kShareOfVolume * std::abs(signed_volume(mesh)) /
+                              (kSphereVolume * smallest * smallest * smallest));
+}
+
+// Seconds for a facet to be indexed and for a sphere to be placed, on one thread of a CPU.
+WorkEstimate estimate_work(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options) {
+  constexpr double kSecondsPerFacet = 0.8e-6;
+  constexpr double kSecondsPerSphere = 300e-6;
+  const auto facets = static_cast<double>(mesh.triangles.size());
+  const double spheres = most_spheres(mesh, limits, options);
+  return {facets * kSecondsPerFacet + spheres * kSecondsPerSphere,
+          facets * (sizeof(Triangle) + sizeof(Vec3f)) + spheres * sizeof(kernels::Ball)};
+}
+
+Packing packing_of(const kernels::AdaptiveResult& result, const PackingLimits& limits) {
+  Packing packing;
+  packing.limits = limits;
+  packing.statistics.candidates = result.search_count;
+  packing.statistics.index_bytes = result.index_bytes;
+  packing.spheres.reserve(result.balls.size());
+  for (const kernels::Ball& ball : result.balls) {
+    const bool on_lattice = packing.spheres.size() < result.lattice_count;
+    packing.spheres.push_back(
+        {ball.centre, ball.radius, on_lattice ? SphereKind::lattice : SphereKind::adaptive});
+  }
+  return packing;
+}
+
+}  // namespace
+
+Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options,
+                      Monitor& monitor, const DeviceRequest& device) {
+  check(limits, options);
+  if (mesh.triangles.empty() || options.max_count == 0) return {{}, limits, {}, {}};
+  const kernels::AdaptiveInput input = input_for(mesh, limits, options, monitor);
+  DeviceUse use;
+  const auto on_cpu = [&](DeviceRequest::Kind kind) {
+    return kind == DeviceRequest::Kind::cpu_one_thread
+               ? kernels::pack_adaptive(kernels::SerialExecutor{}, input)
+               : kernels::pack_adaptive(kernels::TbbExecutor{}, input);
+  };
+  const auto on_cuda = [&](int index) { return kernels::pack_adaptive_on_cuda(index, input); };
+  Packing packing = packing_of(
+      run_on_device(device, estimate_work(mesh, limits, options), monitor, use, on_cpu, on_cuda), limits);
+  packing.device = std::move(use);
+  return packing;
+}
+
+double estimate_adaptive_bytes(const Mesh& mesh, const PackingLimits& limits,
+                               const AdaptiveOptions& options) {
+  const double index_bytes = static_cast<double>(mesh.triangles.size()) * (4 * sizeof(kernels::Facet) + 64);
+  // Each sphere comes with the cells around it and its entries in the grid.
+  constexpr double kBytesPerSphere = 3000;
+  return index_bytes + most_spheres(mesh, limits, options) * kBytesPerSphere + (1 << 24);
+}
+
+}  // namespace aerate

@@ -1,0 +1,271 @@
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "core/error.h"
+#include "packing/adaptive.h"
+#include "packing/verify.h"
+#include "tests/support/clearance.h"
+#include "tests/support/shapes.h"
+
+namespace aerate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Packing pack(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options = {},
+             DeviceRequest::Kind kind = DeviceRequest::Kind::cpu) {
+  Monitor monitor;
+  return pack_adaptive(mesh, limits, options, monitor, {kind, 0});
+}
+
+// No index is asked: every sphere against every triangle and every other sphere.
+void expect_limits_held(const Mesh& mesh, const Packing& packing) {
+  ASSERT_FALSE(packing.spheres.empty());
+  EXPECT_GE(test::smallest_gap(packing.spheres), packing.limits.gap);
+  for (const Sphere& sphere : packing.spheres) {
+    EXPECT_GE(test::distance_to_surface(mesh, sphere.centre) - sphere.radius, packing.limits.wall);
+    EXPECT_EQ(test::winding_number(mesh, sphere.centre), 1);
+    EXPECT_GE(sphere.radius, packing.limits.min_radius);
+    EXPECT_LE(sphere.radius, packing.limits.max_radius);
+  }
+}
+
+void expect_same_bytes(const Packing& a, const Packing& b) {
+  ASSERT_EQ(a.spheres.size(), b.spheres.size());
+  for (std::size_t i = 0; i < a.spheres.size(); ++i) {
+    ASSERT_TRUE(a.spheres[i].centre == b.spheres[i].centre) << i;
+    ASSERT_EQ(a.spheres[i].radius, b.spheres[i].radius) << i;
+  }
+}
+
+// A corner of many directions, concave edges included: an L-shaped block on its side.
+Mesh make_bracket() {
+  Mesh mesh;
+  const float profile[6][2] = {{0, 0}, {30, 0}, {30, 8}, {9, 8}, {9, 25}, {0, 25}};
+  for (const float z : {0.0f, 12.0f}) {
+    for (const auto& p : profile) mesh.positions.push_back({p[0], p[1], z});
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t j = (i + 1) % 6;
+    mesh.triangles.push_back({i, j, j + 6});
+    mesh.triangles.push_back({i, j + 6, i + 6});
+  }
+  for (const Triangle& t : std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}) {
+    mesh.triangles.push_back({t[0], t[2], t[1]});
+    mesh.triangles.push_back({t[0] + 6, t[1] + 6, t[2] + 6});
+  }
+  return mesh;
+}
+
+// A UV sphere of radius 10 around (3, -4, 5).
+Mesh make_ball(std::uint32_t rings) {
+  Mesh mesh;
+  const std::uint32_t segments = 2 * rings;
+  mesh.positions.push_back({3, -4, 15});
+  for (std::uint32_t r = 1; r < rings; ++r) {
+    for (std::uint32_t s = 0; s < segments; ++s) {
+      const double theta = std::numbers::pi * r / rings;
+      const double phi = 2 * std::numbers::pi * s / segments;
+      mesh.positions.push_back(
+          to_float({3 + 10 * std::sin(theta) * std::cos(phi), -4 + 10 * std::sin(theta) * std::sin(phi),
+                    5 + 10 * std::cos(theta)}));
+    }
+  }
+  mesh.positions.push_back({3, -4, -5});
+  const auto at = [&](std::uint32_t r, std::uint32_t s) { return 1 + (r - 1) * segments + s % segments; };
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  for (std::uint32_t s = 0; s < segments; ++s) {
+    mesh.triangles.push_back({0, at(1, s), at(1, s + 1)});
+    mesh.triangles.push_back({last, at(rings - 1, s + 1), at(rings - 1, s)});
+    for (std::uint32_t r = 1; r + 1 < rings; ++r) {
+      mesh.triangles.push_back({at(r, s), at(r + 1, s), at(r + 1, s + 1)});
+      mesh.triangles.push_back({at(r, s), at(r + 1, s + 1), at(r, s + 1)});
+    }
+  }
+  return mesh;
+}
+
+Mesh read_binary_stl(const std::filesystem::path& path) {
+  std::string bytes(std::filesystem::file_size(path), '\0');
+  std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, 4);
+  Mesh mesh;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      float p[3];
+      std::memcpy(p, bytes.data() + 84 + 50 * i + 12 + 12 * corner, 12);
+      mesh.positions.push_back({p[0], p[1], p[2]});
+    }
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+TEST(Adaptive, FirstSphereOfABallIsTheBall) {
+  const Mesh ball = make_ball(40);
+  const Packing packing = pack(ball, {1, 0.5, 0.5, kInfinity}, {.max_count = 1});
+  ASSERT_EQ(packing.spheres.size(), 1U);
+  EXPECT_LT(length(packing.spheres[0].centre - Vec3d{3, -4, 5}), 0.05);
+  // The facets lie a little inside of the sphere through their corners.
+  EXPECT_LT(packing.spheres[0].radius, 9.0);
+  EXPECT_GT(packing.spheres[0].radius, 10 * std::cos(std::numbers::pi / 40) - 1.02);
+}
+
+TEST(Adaptive, FirstSpheresOfACubeAreThoseOfGeometry) {
+  const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
+  const Packing packing = pack(cube, {0, 0, 0.01, kInfinity}, {.max_count = 9});
+  ASSERT_EQ(packing.spheres.size(), 9U);
+  EXPECT_NEAR(packing.spheres[0].radius, 5, 1e-3);
+  EXPECT_NEAR(length(packing.spheres[0].centre - Vec3d{5, 5, 5}), 0, 1e-2);
+  // In a corner, tangent to three faces and the first sphere: sqrt(3) (5 - r) = 5 + r.
+  const double corner = 5 * (std::sqrt(3.0) - 1) / (std::sqrt(3.0) + 1);
+  for (std::size_t i = 1; i < 9; ++i) EXPECT_NEAR(packing.spheres[i].radius, corner, 1e-3) << i;
+}
+
+TEST(Adaptive, HoldsWallGapAndRadii) {
+  const Mesh bracket = make_bracket();
+  for (const PackingLimits& limits :
+       {PackingLimits{0, 0, 0.3, kInfinity}, PackingLimits{0.8, 0, 0.3, 2.0}, PackingLimits{0, 0.7, 0.3, 1.0},
+        PackingLimits{1.0, 0.5, 0.4, kInfinity}, PackingLimits{0.3, 0.2, 0.45, 0.5}}) {
+    expect_limits_held(bracket, pack(bracket, limits));
+  }
+}
+
+TEST(Adaptive, VerificationFindsNothingToCorrect) {
+  const Mesh ball = make_ball(24);
+  const Packing packing = verify_packing(ball, pack(ball, {0.4, 0.2, 0.2, 3.0}));
+  EXPECT_GT(packing.spheres.size(), 1000U);
+  EXPECT_EQ(packing.statistics.dropped_by_verification, 0U);
+  EXPECT_EQ(packing.statistics.shrunk_by_verification, 0U);
+}
+
+TEST(Adaptive, LeavesNoRoomForAnotherSphere) {
+  const Mesh bracket = make_bracket();
+  const PackingLimits limits{0.5, 0.4, 0.8, kInfinity};
+  const Packing packing = pack(bracket, limits);
+  // On a grid as fine as this a void with room for 1.15 times the least radius cannot hide.
+  const double step = 0.25 * limits.min_radius;
+  double largest = 0;
+  for (double x = 0.5; x < 30; x += step) {
+    for (double y = 0.5; y < 25; y += step) {
+      for (double z = 0.5; z < 12; z += step) {
+        double room = kInfinity;
+        for (const Sphere& s : packing.spheres) {
+          room = std::min(room, length(Vec3d{x, y, z} - s.centre) - s.radius - limits.gap);
+        }
+        if (room <= largest || test::winding_number(bracket, {x, y, z}) != 1) continue;
+        largest =
+            std::max(largest, std::min(room, test::distance_to_surface(bracket, {x, y, z}) - limits.wall));
+      }
+    }
+  }
+  EXPECT_LT(largest, 1.02 * limits.min_radius);
+}
+
+TEST(Adaptive, SameBytesForAnyNumberOfThreads) {
+  const Mesh bracket = make_bracket();
+  for (const PackingLimits& limits :
+       {PackingLimits{0.2, 0.1, 0.3, kInfinity}, PackingLimits{0, 0, 0.25, 1.0}}) {
+    const Packing serial = pack(bracket, limits, {}, DeviceRequest::Kind::cpu_one_thread);
+    EXPECT_GT(serial.spheres.size(), 500U);
+    for (const int threads : {1, 2, 8}) {
+      const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<std::size_t>(std::max(threads, 2)));
+      tbb::task_arena arena(threads);
+      arena.execute([&] { expect_same_bytes(serial, pack(bracket, limits)); });
+    }
+  }
+}
+
+TEST(Adaptive, StopsAtACountWithTheLargest) {
+  const Mesh bracket = make_bracket();
+  const Packing few = pack(bracket, {0.5, 0.5, 0.1, kInfinity}, {.max_count = 20});
+  const Packing more = pack(bracket, {0.5, 0.5, 0.1, kInfinity}, {.max_count = 60});
+  ASSERT_EQ(few.spheres.size(), 20U);
+  ASSERT_EQ(more.spheres.size(), 60U);
+  double largest_after = 0;
+  for (std::size_t i = 20; i < 60; ++i) largest_after = std::max(largest_after, more.spheres[i].radius);
+  for (const Sphere& sphere : few.spheres) EXPECT_GE(sphere.radius, 0.85 * largest_after);
+}
+
+TEST(Adaptive, StopsAtADensity) {
+  const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
+  for (const double max_radius : {kInfinity, 0.8}) {
+    const Packing packing = pack(cube, {0, 0, 0.2, max_radius}, {.target_density = 0.6});
+    const Sphere last = packing.spheres.back();
+    const double volume = total_volume(packing);
+    EXPECT_GE(volume, 600);
+    EXPECT_LT(volume - 4.0 / 3.0 * std::numbers::pi * std::pow(last.radius, 3), 600.0);
+  }
+}
+
+TEST(Adaptive, StartsFromALatticeWhereTheLargestRadiusIsSmall) {
+  const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
+  const Packing packing = pack(cube, {0, 0, 0.12, 0.5});
+  const auto on_lattice = std::count_if(packing.spheres.begin(), packing.spheres.end(),
+                                        [](const Sphere& s) { return s.kind == SphereKind::lattice; });
+  EXPECT_GT(on_lattice, 1000);
+  EXPECT_GT(total_volume(packing), 730);
+  EXPECT_GE(measure_clearances(cube, packing.spheres).wall, 0);
+  EXPECT_GE(measure_clearances(cube, packing.spheres).gap.value(), 0);
+}
+
+TEST(Adaptive, LeavesOverlapsOfPartsAlone) {
+  const Mesh parts =
+      test::join(test::make_box({0, 0, 0}, {10, 10, 10}), test::make_box({6, 0, 0}, {20, 10, 10}));
+  expect_limits_held(parts, pack(parts, {0.5, 0.5, 0.7, kInfinity}));
+}
+
+TEST(Adaptive, KeepsTheWallToACrackThinnerThanAnyCell) {
+  // A slit 1 micrometre wide, from above almost to the ground.
+  const Mesh block = test::make_box({0, 0, 0}, {20, 20, 20});
+  const Mesh slit = test::turned_inside_out(test::make_box({9.9995f, -1, 2}, {10.0005f, 21, 21}));
+  const Mesh cracked = test::join(block, slit);
+  const Packing packing = pack(cracked, {1.2, 0.8, 1.0, kInfinity});
+  expect_limits_held(cracked, packing);
+  for (const Sphere& s : packing.spheres) {
+    if (s.centre.z > 2) {
+      EXPECT_GE(std::abs(s.centre.x - 10) - s.radius, 1.199);
+    }
+  }
+}
+
+TEST(Adaptive, KeepsTheWallOfTheDragonWithItsCrack) {
+  const std::filesystem::path path = std::filesystem::path(AERATE_SHARED) / "models/dragon-47k-100mm.stl";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const Mesh dragon = read_binary_stl(path);
+  const Packing packing = pack(dragon, {1.2, 0.8, 1.5, kInfinity});
+  expect_limits_held(dragon, packing);
+  EXPECT_GT(total_volume(packing) / signed_volume(dragon), 0.335);
+}
+
+TEST(Adaptive, GivesNothingWhereNothingFits) {
+  const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
+  EXPECT_TRUE(pack(cube, {4.0, 0, 1.5, kInfinity}).spheres.empty());
+  EXPECT_TRUE(pack(cube, {20.0, 0, 1.5, kInfinity}).spheres.empty());
+  EXPECT_TRUE(pack({}, {0, 0, 1.5, kInfinity}).spheres.empty());
+}
+
+TEST(Adaptive, RefusesLimitsThatContradictOrNeverEnd) {
+  const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
+  EXPECT_THROW(pack(cube, {0, 0, 0, kInfinity}), UsageError);
+  EXPECT_THROW(pack(cube, {-1, 0, 1, kInfinity}), UsageError);
+  EXPECT_THROW(pack(cube, {0, 0, 2, 1}), UsageError);
+  EXPECT_THROW(pack(cube, {0, 0, 0, 0}), UsageError);
+  EXPECT_THROW(pack(cube, {0, 0, 1, kInfinity}, {.target_density = 1.5}), UsageError);
+  EXPECT_NO_THROW(pack(cube, {0, 0, 0, kInfinity}, {.max_count = 3}));
+}
+
+}  // namespace
+}  // namespace aerate
