@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -25,11 +26,16 @@ std::size_t count_faces(const aiScene& scene) {
   return faces;
 }
 
-bool has_polygons(const aiScene& scene) {
-  for (unsigned int m = 0; m < scene.mNumMeshes; ++m) {
-    if ((scene.mMeshes[m]->mPrimitiveTypes & aiPrimitiveType_POLYGON) != 0) return true;
-  }
-  return false;
+bool has_polygons(const aiMesh& mesh) {
+  // assimp's flag is also set for faces without any corners, which its triangulation does not survive alone.
+  if ((mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON) == 0) return false;
+  return std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
+                     [](const aiFace& face) { return face.mNumIndices > 3; });
+}
+
+bool needs_triangulation(const aiScene& scene) {
+  return std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes,
+                     [](const aiMesh* mesh) { return has_polygons(*mesh); });
 }
 
 [[noreturn]] void fail_missing_vertex(const std::string& name, unsigned int face) {
@@ -115,7 +121,7 @@ ImportedModel take_over(Assimp::Importer& importer, const FileFacts& facts, doub
   for (unsigned int m = 0; m < scene->mNumMeshes; ++m)
     model.vertices_in_file += scene->mMeshes[m]->mNumVertices;
   if (facts.vertex_count) model.vertices_in_file = *facts.vertex_count;
-  if (has_polygons(*scene)) scene = triangulate(importer, name);
+  if (needs_triangulation(*scene)) scene = triangulate(importer, name);
   Welder welder(faces);
   if (scene->mRootNode != nullptr) add_node(*scene, *scene->mRootNode, Affine{}, factor, name, welder, model);
   model.mesh = std::move(welder).finish();

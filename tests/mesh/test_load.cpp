@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -304,6 +305,33 @@ TEST_F(Load, TextPlyWithAQuad) {
   EXPECT_EQ(model.vertices_in_file, 4u);
   EXPECT_EQ(model.mesh.triangles.size(), 4u);
   EXPECT_NEAR(surface_area(model.mesh), 2.0, 1e-6);
+}
+
+TEST_F(Load, FacesOfPlyWithoutCornersAreLeftOut) {
+  std::string text(kTextPly);
+  text.replace(text.find("4 0 1 2 3 7"), 11, "0 7");
+  EXPECT_EQ(load("hollow.ply", text).mesh.triangles.size(), 2u);
+}
+
+TEST_F(Load, TextCoordinatesAreReadToTheLastPlace) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> coordinate(-100, 100);
+  std::ostringstream text;
+  text.precision(9);
+  std::vector<Vec3f> corners;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3f p = corners.emplace_back(Vec3f{coordinate(random), coordinate(random), coordinate(random)});
+    text << "v " << p.x << " " << p.y << " " << p.z << "\n";
+  }
+  for (int i = 1; i < 3000; i += 3) text << "f " << i << " " << i + 1 << " " << i + 2 << "\n";
+  const Mesh mesh = load("soup.obj", text.str()).mesh;
+  const auto within_one_place = [](float a, float b) { return a == b || a == std::nextafter(b, a); };
+  ASSERT_EQ(mesh.positions.size(), corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    EXPECT_TRUE(within_one_place(mesh.positions[i].x, corners[i].x));
+    EXPECT_TRUE(within_one_place(mesh.positions[i].y, corners[i].y));
+    EXPECT_TRUE(within_one_place(mesh.positions[i].z, corners[i].z));
+  }
 }
 
 TEST_F(Load, BinaryPlyOfEitherByteOrderKeepsBits) {
