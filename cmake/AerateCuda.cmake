@@ -77,9 +77,9 @@ if(AERATE_WITH_CUDA)
   endif()
 
   # The standard is given as an option because CMake 3.25 does not know that nvcc has C++20. As for C++, a*b+c
-  # is never contracted. -Wpedantic and -Wconversion are for the compiler that sees the sources themselves:
+  # is never contracted. Kernels may call constexpr functions of the standard library (numeric_limits). -Wpedantic and -Wconversion are for the compiler that sees the sources themselves:
   # through nvcc they complain about the code that it generates.
   target_compile_options(aerate_options INTERFACE
-    $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-std=c++20 --fmad=false
+    $<$<COMPILE_LANG_AND_ID:CUDA,NVIDIA>:-std=c++20 --fmad=false --expt-relaxed-constexpr
       -Xcompiler=-ffp-contract=off,-Wall,-Wextra,-Wnon-virtual-dtor,-Woverloaded-virtual>)
 endif()

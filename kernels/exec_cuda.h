@@ -74,7 +74,8 @@ class CudaBuffer {
 #if defined(__CUDACC__)
 namespace cuda_detail {
 
-inline constexpr unsigned kBlock = 256;
+// Small blocks, since kernels that handle a triangle in fp64 need up to 170 registers.
+inline constexpr unsigned kBlock = 128;
 
 // The functor stays where the launch put it, in constant memory; no thread copies it.
 template <typename F>

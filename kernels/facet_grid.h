@@ -190,11 +190,15 @@ struct FillReferences {
   }
 };
 
-struct CopyCounts {
+// References up to and with a cell in its row along x, which the offsets tell.
+struct SumAlongRow {
   View<const std::uint32_t> offsets;
-  View<std::uint32_t> counts;
+  std::size_t row_length;
+  View<std::uint32_t> sums;
 
-  AERATE_HD void operator()(std::size_t i) const { counts[i] = offsets[i + 1] - offsets[i]; }
+  AERATE_HD void operator()(std::size_t i) const {
+    sums[i] = offsets[i + 1] - offsets[i / row_length * row_length];
+  }
 };
 
 // Running sums along one axis; an index is a line of cells.
@@ -257,9 +261,8 @@ FacetGrid<Executor> build_facet_grid(const Executor& executor, View<const Facet>
   executor.for_each_index(
       facets.size, grid_detail::FillReferences{grid, facets, counts, offsets, index.references.view()});
 
-  executor.for_each_index(cells, grid_detail::CopyCounts{offsets, counts});
   const std::size_t nx = grid.count_x, ny = grid.count_y, nz = grid.count_z;
-  executor.for_each_index(ny * nz, grid_detail::SumAlongLine{counts, ny * nz, 0, nx, 1, nx});
+  executor.for_each_index(cells, grid_detail::SumAlongRow{offsets, nx, counts});
   executor.for_each_index(nx * nz, grid_detail::SumAlongLine{counts, nx, nx * ny, 1, nx, ny});
   executor.for_each_index(nx * ny, grid_detail::SumAlongLine{counts, nx * ny, 0, 1, nx * ny, nz});
 

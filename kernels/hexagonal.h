@@ -219,7 +219,17 @@ struct HexagonalResult {
   // does each of its 61 places that stayed empty for that reason.
   std::array<std::uint64_t, kCandidateStates> state_counts{};
   std::size_t index_bytes = 0;
+  std::size_t slots_at_a_time = 0;
 };
+
+// What the job needs at least for the facets and their index, whatever the size of a slab: with one reference
+// for each facet, where there are several.
+inline std::size_t least_index_bytes(const HexagonalInput& input) {
+  const std::size_t facets = input.triangles.size();
+  const auto columns = static_cast<std::size_t>(static_cast<double>(facets) / kFacetsPerColumn);
+  return facets * (sizeof(Facet) + 2 * sizeof(std::uint32_t)) +
+         (columns + 2 * input.grid.cell_count()) * sizeof(std::uint32_t);
+}
 
 // Memory that one place needs at most while it is worked on: its state, its share of two counts for its
 // group, its sphere, and its entry in the list of replaced spheres.
@@ -254,6 +264,7 @@ class HexagonalPacker {
     add_family(tetrahedral, kTetrahedralPerCell);
 
     HexagonalResult result;
+    result.slots_at_a_time = slab_;
     std::size_t total = 0;
     for (const auto& pieces : pieces_)
       for (const std::vector<Sphere>& piece : pieces) total += piece.size();

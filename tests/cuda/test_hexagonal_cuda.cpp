@@ -1,8 +1,13 @@
-#include <bit>
-#include <cmath>
+#include <filesystem>
 
+#include "core/error.h"
+#include "kernels/exec_cpu.h"
+#include "kernels/hexagonal_cuda.h"
+#include "mesh/load.h"
 #include "packing/hexagonal.h"
 #include "tests/cuda/cuda_test.h"
+#include "tests/cuda/same_bits.h"
+#include "tests/support/hexagonal_input.h"
 #include "tests/support/shapes.h"
 
 // The whole hexagonal packer on a CUDA device beside the CPU: the same bytes.
@@ -18,32 +23,13 @@ Packing pack_on(Kind kind, const Mesh& mesh, const PackingLimits& limits) {
   return pack_hexagonal(mesh, limits, monitor, {.kind = kind});
 }
 
-void expect_same_bits(double a, double b, std::size_t sphere) {
-  ASSERT_EQ(std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(b)) << "sphere " << sphere;
-}
-
-void expect_same_packing(const Packing& a, const Packing& b) {
-  ASSERT_EQ(a.spheres.size(), b.spheres.size());
-  for (std::size_t i = 0; i < a.spheres.size(); ++i) {
-    expect_same_bits(a.spheres[i].centre.x, b.spheres[i].centre.x, i);
-    expect_same_bits(a.spheres[i].centre.y, b.spheres[i].centre.y, i);
-    expect_same_bits(a.spheres[i].centre.z, b.spheres[i].centre.z, i);
-    expect_same_bits(a.spheres[i].radius, b.spheres[i].radius, i);
-    ASSERT_EQ(a.spheres[i].kind, b.spheres[i].kind) << "sphere " << i;
-  }
-  EXPECT_EQ(a.statistics.candidates, b.statistics.candidates);
-  EXPECT_EQ(a.statistics.outside, b.statistics.outside);
-  EXPECT_EQ(a.statistics.overlapped_region, b.statistics.overlapped_region);
-  EXPECT_EQ(a.statistics.near_surface, b.statistics.near_surface);
-  EXPECT_EQ(a.statistics.below_min_radius, b.statistics.below_min_radius);
-}
-
 void expect_same_on_cuda(const Mesh& mesh, const PackingLimits& limits, std::size_t least_spheres) {
   const Packing cpu = pack_on(Kind::cpu, mesh, limits);
   const Packing cuda = pack_on(Kind::cuda, mesh, limits);
   EXPECT_GE(cpu.spheres.size(), least_spheres);
-  expect_same_packing(cpu, cuda);
-  EXPECT_TRUE(cuda.device.name.starts_with("cuda:0")) << cuda.device.name;
+  test::expect_same_packing(cuda, cpu);
+  EXPECT_TRUE(cuda.device.name.starts_with("cuda:0 (")) << cuda.device.name;
+  EXPECT_EQ(cuda.device.reason, "asked for");
 }
 
 TEST_F(HexagonalCuda, PacksATorusAsTheCpuDoes) {
@@ -56,6 +42,61 @@ TEST_F(HexagonalCuda, PacksOverlappingPartsAsTheCpuDoes) {
   expect_same_on_cuda(
       test::join(test::make_box({0, 0, 0}, {10, 10, 10}), test::make_box({5, 5, 5}, {15, 15, 15})),
       {0, 0, 0, 0.7}, 100);
+}
+
+TEST_F(HexagonalCuda, PacksInSlabsAsTheCpuDoesAtOnce) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  kernels::HexagonalInput input = test::hexagonal_input(torus, 0.6);
+  const kernels::HexagonalResult cpu = kernels::pack_hexagonal(kernels::SerialExecutor{}, input);
+  input.most_slots = 777;
+  const kernels::HexagonalResult cuda = kernels::pack_hexagonal_on_cuda(0, input);
+  EXPECT_EQ(cuda.slots_at_a_time, 777U);
+  test::expect_same_spheres(cuda.spheres, cpu.spheres);
+  EXPECT_EQ(cuda.state_counts, cpu.state_counts);
+}
+
+struct RealModel {
+  const char* file;
+  PackingLimits limits;
+  std::size_t least_spheres;
+};
+
+class HexagonalCudaOnModels : public HexagonalCuda, public ::testing::WithParamInterface<RealModel> {};
+
+TEST_P(HexagonalCudaOnModels, PacksAsTheCpuDoes) {
+  const std::filesystem::path file = std::filesystem::path(AERATE_SHARED) / "models" / GetParam().file;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  expect_same_on_cuda(load_model(file).mesh, GetParam().limits, GetParam().least_spheres);
+}
+
+INSTANTIATE_TEST_SUITE_P(, HexagonalCudaOnModels,
+                         ::testing::Values(RealModel{"cone.stl", {0, 0, 0, 0.5}, 500},
+                                           RealModel{"capsule.stl", {0.1, 0.1, 0.05, 0.6}, 200},
+                                           RealModel{"bunny-7202.stl", {0, 0, 0, 0.5}, 500},
+                                           RealModel{"bunny-7202.stl", {0.1, 0.05, 0.02, 0.4}, 500},
+                                           RealModel{"dino.off", {0, 0, 0, 0.05}, 500},
+                                           RealModel{"dragon-21782.stl", {0, 0, 0, 0.2}, 500}));
+
+TEST_F(HexagonalCuda, StopsWhenItsCallerDoes) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  kernels::HexagonalInput input = test::hexagonal_input(torus, 0.6);
+  input.most_slots = 777;
+  input.progress = [](double share) {
+    if (share > 0.2) throw InterruptedError();
+  };
+  EXPECT_THROW(kernels::pack_hexagonal_on_cuda(0, input), InterruptedError);
+}
+
+TEST_F(HexagonalCuda, RefusesADeviceThatIsNotThere) {
+  Monitor monitor;
+  const Mesh box = test::make_box({0, 0, 0}, {1, 1, 1});
+  try {
+    pack_hexagonal(box, {0, 0, 0, 0.2}, monitor, {.kind = Kind::cuda, .index = 1000});
+    FAIL() << "there are not 1001 devices";
+  } catch (const FailureError& error) {
+    EXPECT_NE(std::string(error.what()).find("no CUDA device 1000"), std::string::npos) << error.what();
+    EXPECT_FALSE(error.hint().empty());
+  }
 }
 
 }  // namespace

@@ -4,9 +4,11 @@
 #include <map>
 #include <numbers>
 
+#include "kernels/exec_cpu.h"
 #include "kernels/hexagonal.h"
 #include "packing/hexagonal.h"
 #include "tests/support/clearance.h"
+#include "tests/support/hexagonal_input.h"
 #include "tests/support/shapes.h"
 
 namespace aerate {
@@ -183,6 +185,21 @@ TEST(Hexagonal, IsTheSameOnOneThreadAndOnAll) {
   const Packing parallel = pack_hexagonal(torus, limits, monitor, {.kind = DeviceRequest::Kind::cpu});
   ASSERT_GT(serial.spheres.size(), 1000U);
   expect_same_spheres(serial.spheres, parallel.spheres, 0.0);
+}
+
+TEST(Hexagonal, IsTheSameInSlabsOfAnySize) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  const kernels::HexagonalInput whole = test::hexagonal_input(torus, 0.6);
+  const kernels::HexagonalResult expected = kernels::pack_hexagonal(kernels::SerialExecutor{}, whole);
+  ASSERT_GT(expected.spheres.size(), 1000U);
+  for (const std::size_t most_slots : {std::size_t{1}, std::size_t{500}, std::size_t{777}}) {
+    kernels::HexagonalInput slabs = whole;
+    slabs.most_slots = most_slots;
+    const kernels::HexagonalResult result = kernels::pack_hexagonal(kernels::SerialExecutor{}, slabs);
+    EXPECT_LE(result.slots_at_a_time, std::max<std::size_t>(most_slots, kernels::kReplacements));
+    expect_same_spheres(result.spheres, expected.spheres, 0.0);
+    EXPECT_EQ(result.state_counts, expected.state_counts);
+  }
 }
 
 TEST(Hexagonal, EstimateCoversWhatIsKeptAndRefusesTheAbsurd) {
