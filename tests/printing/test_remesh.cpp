@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
+#include "mesh/load.h"
 #include "printing/remesh.h"
 #include "printing/shells.h"
 #include "tests/support/caught.h"
@@ -151,6 +152,25 @@ TEST(Remesh, ACrackThinnerThanAVoxelTurnsNoRegion) {
       EXPECT_EQ(winding.view().winding_number({x, 10.3, 5.2}), 1) << "x " << x;
     }
   }
+}
+
+// Cracks thinner than a voxel, doubled edges, triangles of any shape.
+TEST(Remesh, AScannedModelBecomesSound) {
+  const std::filesystem::path path = std::filesystem::path(AERATE_SHARED) / "models" / "dragon-47k-100mm.stl";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const Mesh dragon = load_model(path).mesh;
+  ASSERT_EQ(count_shells(dragon), 1);
+  const Mesh surface = level_set_of(dragon, 0.5).surface();
+  EXPECT_TRUE(is_sound(surface));
+  EXPECT_EQ(count_shells(surface), 1);
+  EXPECT_NEAR(signed_volume(surface), signed_volume(dragon), 0.001 * signed_volume(dragon));
+
+  // With a second part the winding number decides, and cracks that voxels hold in part stay in part.
+  const Mesh parts = test::join(dragon, test::make_box({200, 0, 0}, {210, 10, 10}));
+  const Mesh both = level_set_of(parts, 0.5).surface();
+  EXPECT_TRUE(is_sound(both));
+  EXPECT_NEAR(signed_volume(both), signed_volume(parts), 0.004 * signed_volume(parts));
+  EXPECT_EQ(count_shells(both), 2) << "noise is left";
 }
 
 TEST(Remesh, RefusesMoreMemoryThanAllowedAndNamesAVoxelSizeThatWouldDo) {
