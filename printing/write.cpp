@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fcntl.h>
 #include <limits>
@@ -141,10 +142,28 @@ void write_stl(const Mesh& mesh, OutputFile& file) {
   });
 }
 
-template <typename Number>
-void append_number(std::string& out, Number number) {
-  std::array<char, 32> digits{};
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
+void append_index(std::string& out, std::uint64_t index) {
+  std::array<char, 20> digits{};
+  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), index).ptr);
+}
+
+// Nine significant digits give fp32 back to a reader that rounds once. Readers that add up the parts of a
+// number in fp32, as assimp's, need a decimal that is nearer to it than that, and no exponent.
+void append_coordinate(std::string& out, float coordinate) {
+  constexpr int kSignificantDigits = 11;
+  constexpr double kLog10Of2 = 0.301029995663981;
+  if (coordinate == 0) {
+    out += '0';
+    return;
+  }
+  const int exponent = static_cast<int>(std::floor(std::ilogb(coordinate) * kLog10Of2));
+  const int decimals = std::max(1, kSignificantDigits - 1 - exponent);
+  std::array<char, 80> digits{};  // 39 before the point, or 57 after it, at most
+  char* end = std::to_chars(digits.data(), digits.data() + digits.size(), static_cast<double>(coordinate),
+                            std::chars_format::fixed, decimals)
+                  .ptr;
+  while (end[-1] == '0') --end;
+  if (end[-1] == '.') --end;
   out.append(digits.data(), end);
 }
 
@@ -154,7 +173,7 @@ void write_obj(const Mesh& mesh, OutputFile& file) {
     out += 'v';
     for (const float coordinate : {mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z}) {
       out += ' ';
-      append_number(out, coordinate);
+      append_coordinate(out, coordinate);
     }
     out += '\n';
   });
@@ -162,7 +181,7 @@ void write_obj(const Mesh& mesh, OutputFile& file) {
     out += 'f';
     for (const std::uint32_t vertex : mesh.triangles[i]) {
       out += ' ';
-      append_number(out, std::uint64_t{vertex} + 1);
+      append_index(out, std::uint64_t{vertex} + 1);
     }
     out += '\n';
   });

