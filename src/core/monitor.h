@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string_view>
 
 namespace aerate {
@@ -23,6 +24,11 @@ class Monitor {
   // Throws InterruptedError when the user has asked to stop. Stages call it between pieces of work of at most
   // a second or so.
   virtual void check_interrupted() {}
+
+  // A file exists from now on that must not outlive a process which is ended abruptly; and: it is gone, or
+  // has become an output. A few at a time.
+  virtual void temporary_file_made(const std::filesystem::path& /*path*/) {}
+  virtual void temporary_file_gone(const std::filesystem::path& /*path*/) {}
 };
 
 }  // namespace aerate

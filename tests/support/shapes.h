@@ -56,6 +56,33 @@ inline Mesh make_torus(double ring_radius, double tube_radius, std::uint32_t rin
   return mesh;
 }
 
+// A sphere about the origin; `rings` x `sides` quads between the poles, outward.
+inline Mesh make_uv_sphere(double radius, std::uint32_t rings, std::uint32_t sides) {
+  Mesh mesh;
+  const auto add = [&](double polar, double azimuth) {
+    mesh.positions.push_back(to_float({radius * std::sin(polar) * std::cos(azimuth),
+                                       radius * std::sin(polar) * std::sin(azimuth),
+                                       radius * std::cos(polar)}));
+  };
+  add(0, 0);
+  for (std::uint32_t i = 1; i < rings; ++i) {
+    for (std::uint32_t j = 0; j < sides; ++j)
+      add(std::numbers::pi * i / rings, 2 * std::numbers::pi * j / sides);
+  }
+  add(std::numbers::pi, 0);
+  const auto bottom = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  const auto at = [&](std::uint32_t ring, std::uint32_t side) { return 1 + (ring - 1) * sides + side % sides; };
+  for (std::uint32_t j = 0; j < sides; ++j) {
+    mesh.triangles.push_back({0, at(1, j), at(1, j + 1)});
+    for (std::uint32_t i = 1; i + 1 < rings; ++i) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+    mesh.triangles.push_back({bottom, at(rings - 1, j + 1), at(rings - 1, j)});
+  }
+  return mesh;
+}
+
 inline Mesh turned_inside_out(Mesh mesh) {
   for (Triangle& t : mesh.triangles) t = {t[0], t[2], t[1]};
   return mesh;

@@ -1,0 +1,89 @@
+#include "cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "cli/config_file.h"
+#include "cli/hollow_command.h"
+#include "cli/inspect_command.h"
+#include "cli/interrupt.h"
+#include "cli/pack_command.h"
+
+namespace aerate::cli {
+namespace {
+
+constexpr const char* kFooter =
+    "Lengths are millimetres. Results go to standard output, notices and errors to standard error.\n"
+    "A configuration file (--config FILE) holds the same options, by their long names without dashes,\n"
+    "in sections named after the commands ([hollow]) or, before any section, for whichever command is run;\n"
+    "the command line goes before it.\n"
+    "\n"
+    "Exit status:\n"
+    "    0  done\n"
+    "    1  internal failure, or an output that cannot be written\n"
+    "    2  usage: options, a configuration file, limits that contradict each other, more than memory holds\n"
+    "    3  unreadable input: missing, empty, truncated or not what it claims to be\n"
+    "    4  a mesh that cannot be used: open, flat, without an inside\n"
+    "    5  nothing to remove under these limits\n"
+    "  130  interrupted; no output was written";
+
+// CLI11's message as an error of the program's own.
+[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
+  std::string what = error.what();
+  while (!what.empty() && what.back() == '\n') what.pop_back();
+  std::string command = app.get_name();
+  for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
+  throw UsageError(what, "see '" + command + " --help'");
+}
+
+// A full disk or a closed pipe behind standard output shows when it is flushed.
+void require_stdout_written() {
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || !std::cout) {
+    throw FailureError("standard output cannot be written: " +
+                       std::generic_category().message(errno == 0 ? EIO : errno));
+  }
+}
+
+}  // namespace
+
+ExitCode run_command_line(int argc, const char* const* argv) {
+  CLI::App app(
+      "Packs disjoint spheres inside a printable model, removes them as internal voids, and writes a\n"
+      "watertight model for any slicer.",
+      "aerate");
+  app.set_version_flag("--version", "aerate " AERATE_VERSION);
+  app.footer(kFooter);
+  app.require_subcommand(1);
+
+  HollowCommand hollow(app);
+  PackCommand pack(app);
+  InspectCommand inspect(app);
+  read_config_files(app);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // --help, --version
+    app.exit(request);
+    require_stdout_written();
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    refuse(app, error);
+  }
+
+  InterruptGuard interrupt;
+  if (hollow.chosen()) hollow.run(interrupt);
+  if (pack.chosen()) pack.run(interrupt);
+  if (inspect.chosen()) inspect.run(interrupt);
+  require_stdout_written();
+  return ExitCode::done;
+}
+
+}  // namespace aerate::cli

@@ -1,0 +1,118 @@
+#include "cli/hollow_command.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "cli/model_options.h"
+#include "cli/run_reported.h"
+#include "core/error.h"
+#include "pipeline/hollow.h"
+#include "pipeline/material_choice.h"
+
+namespace aerate::cli {
+
+struct HollowCommand::Options {
+  explicit Options(CLI::App& app)
+      : command(*app.add_subcommand("hollow", "Remove packed spheres from a model and write the result")),
+        model(command),
+        limits(command),
+        run(command) {
+    command.add_option("-o,--output", output, "The result: .stl, .obj or .ply (required)")
+        ->required()
+        ->type_name("FILE");
+    command.add_option("--tolerance", tolerance, "Void surfaces stay this far inside their spheres at most")
+        ->check(number_between({}, kLongest, "mm"))
+        ->type_name("MM")
+        ->capture_default_str();
+    command
+        .add_option("--max-triangles", max_triangles,
+                    "Loosen the tolerance until the result has at most so many triangles")
+        ->check(number_between(4.0, 4e9, "triangles"))
+        ->type_name("N");
+    command
+        .add_option(
+            "--surface", surface,
+            "The outer surface: keep every triangle of the model; remesh it through a level set, which "
+            "closes small holes and unites overlapping parts; auto keeps it where that can be")
+        ->check(CLI::IsMember({"keep", "remesh", "auto"}))
+        ->type_name("MODE")
+        ->capture_default_str();
+    command
+        .add_option("--voxel", voxel_size,
+                    "Remeshing: edge of a voxel (default a third of the wall or gap, whichever is less)")
+        ->check(number_between({}, kLongest, "mm"))
+        ->type_name("MM");
+    command
+        .add_option("--max-hole", max_hole,
+                    "Remeshing: close holes up to this diameter (default a tenth of the model's diagonal)")
+        ->check(number_between({}, kLongest, "mm"))
+        ->type_name("MM");
+    command
+        .add_option("--material", material,
+                    "For mass and cost: " + material_names() + ", or any with --density and --price")
+        ->type_name("NAME")
+        ->capture_default_str();
+    command.add_option("--density", density, "Density of the material instead, g/cm3")
+        ->check(number_between({}, 100, "g/cm3"))
+        ->type_name("G/CM3");
+    command.add_option("--price", price, "Price of a kilogram of the material instead, in your currency")
+        ->check(number_between(0.0, 1e9, "a kg"))
+        ->type_name("PRICE");
+  }
+
+  HollowOptions to_pipeline() const {
+    HollowOptions options;
+    options.model = model.path;
+    options.output = output;
+    options.load = model.load();
+    options.limits = limits.limits();
+    options.method = limits.method();
+    options.surface =
+        std::map<std::string, SurfaceMode>{
+            {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}
+            .at(surface);
+    options.tolerance = tolerance;
+    if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
+    options.voxel_size = voxel_size;
+    options.max_hole = max_hole;
+    options.material = choose_material(material, density, price);
+    if (tolerance > options.limits.min_radius / 2) {
+      throw UsageError(fmt::format("--tolerance {} mm is more than half of --min-radius {} mm", tolerance,
+                                   options.limits.min_radius),
+                       "give a smaller --tolerance or a larger --min-radius");
+    }
+    return options;
+  }
+
+  CLI::App& command;
+  ModelOptions model;
+  LimitOptions limits;
+  RunOptions run;
+  std::string output;
+  double tolerance = HollowOptions{}.tolerance;
+  std::optional<double> max_triangles;
+  std::string surface = "auto";
+  std::optional<double> voxel_size;
+  std::optional<double> max_hole;
+  std::string material = "PLA";
+  std::optional<double> density;
+  std::optional<double> price;
+};
+
+HollowCommand::HollowCommand(CLI::App& app) : options_(std::make_unique<Options>(app)) {}
+HollowCommand::~HollowCommand() = default;
+
+bool HollowCommand::chosen() const {
+  return options_->command.parsed();
+}
+
+void HollowCommand::run(InterruptGuard& interrupt) const {
+  const HollowOptions options = options_->to_pipeline();
+  run_reported(options_->run, {options.model, options.output}, interrupt,
+               [&](Monitor& monitor) { return hollow(options, monitor); });
+}
+
+}  // namespace aerate::cli

@@ -1,0 +1,23 @@
+#include <exception>
+#include <new>
+
+#include "cli/command_line.h"
+#include "cli/terminal.h"
+#include "core/error.h"
+
+int main(int argc, char** argv) {
+  using aerate::ExitCode;
+  ExitCode code = ExitCode::failure;
+  try {
+    code = aerate::cli::run_command_line(argc, argv);
+  } catch (const aerate::Error& error) {
+    aerate::cli::print_error(error.what(), error.hint());
+    code = error.code();
+  } catch (const std::bad_alloc&) {
+    aerate::cli::print_error("out of memory; no output was written",
+                             "give a larger --max-radius, --min-radius or --tolerance, or a smaller model");
+  } catch (const std::exception& error) {
+    aerate::cli::print_error(error.what(), "this should not happen: please report it with the command line");
+  }
+  return static_cast<int>(code);
+}

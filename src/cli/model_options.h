@@ -1,0 +1,59 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "cli/terminal.h"
+#include "core/packing.h"
+#include "mesh/load.h"
+#include "pipeline/options.h"
+
+namespace aerate::cli {
+
+// Options that several commands share. Each adds itself to a command and is read after parsing.
+
+// MODEL, --unit, --scale
+struct ModelOptions {
+  explicit ModelOptions(CLI::App& command);
+  LoadOptions load() const;
+
+  std::filesystem::path path;
+
+ private:
+  std::string unit_;
+  double scale_ = 1.0;
+};
+
+// --wall, --gap, --min-radius, --max-radius, --packing
+struct LimitOptions {
+  explicit LimitOptions(CLI::App& command);
+  // Throws UsageError for limits that contradict each other.
+  PackingLimits limits() const;
+  PackingMethod method() const { return PackingMethod::hexagonal; }
+
+ private:
+  PackingLimits limits_ = kDefaultLimits;
+  std::string packing_ = "hexagonal";
+};
+
+// --threads, --quiet, --json
+struct RunOptions {
+  explicit RunOptions(CLI::App& command);
+  Verbosity verbosity() const { return quiet_ ? Verbosity::quiet : Verbosity::normal; }
+
+  std::optional<int> threads;
+  std::string json;  // a path, "-" for standard output, empty for none
+
+ private:
+  bool quiet_ = false;
+};
+
+// Accepts a number in [least, most], or in (0, most] with `least` absent; `unit` is for the message.
+CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit);
+
+// No length of a print is beyond this, mm.
+inline constexpr double kLongest = 1e5;
+
+}  // namespace aerate::cli

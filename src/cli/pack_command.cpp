@@ -1,0 +1,48 @@
+#include "cli/pack_command.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "cli/model_options.h"
+#include "cli/run_reported.h"
+#include "pipeline/pack.h"
+
+namespace aerate::cli {
+
+struct PackCommand::Options {
+  explicit Options(CLI::App& app)
+      : command(*app.add_subcommand("pack", "Pack spheres in a closed model and write them as a table")),
+        model(command),
+        limits(command),
+        run(command) {
+    command.add_option("-o,--output", output, "The spheres: .csv, a line x,y,z,radius,kind each (required)")
+        ->required()
+        ->type_name("FILE");
+  }
+
+  CLI::App& command;
+  ModelOptions model;
+  LimitOptions limits;
+  RunOptions run;
+  std::string output;
+};
+
+PackCommand::PackCommand(CLI::App& app) : options_(std::make_unique<Options>(app)) {}
+PackCommand::~PackCommand() = default;
+
+bool PackCommand::chosen() const {
+  return options_->command.parsed();
+}
+
+void PackCommand::run(InterruptGuard& interrupt) const {
+  PackOptions options;
+  options.model = options_->model.path;
+  options.output = options_->output;
+  options.load = options_->model.load();
+  options.limits = options_->limits.limits();
+  options.method = options_->limits.method();
+  run_reported(options_->run, {options.model, options.output}, interrupt,
+               [&](Monitor& monitor) { return pack(options, monitor); });
+}
+
+}  // namespace aerate::cli

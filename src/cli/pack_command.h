@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+namespace CLI {
+class App;
+}
+
+namespace aerate::cli {
+
+class InterruptGuard;
+
+// aerate pack
+class PackCommand {
+ public:
+  explicit PackCommand(CLI::App& app);  // adds itself
+  ~PackCommand();
+  PackCommand(const PackCommand&) = delete;
+  PackCommand& operator=(const PackCommand&) = delete;
+
+  bool chosen() const;
+  void run(InterruptGuard& interrupt) const;
+
+ private:
+  struct Options;
+  std::unique_ptr<Options> options_;
+};
+
+}  // namespace aerate::cli

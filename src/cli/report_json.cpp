@@ -1,0 +1,187 @@
+#include "cli/report_json.h"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace aerate::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(Vec3d v) {
+  return {v.x, v.y, v.z};
+}
+
+template <typename T>
+Json json_of(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json json_of(const std::optional<Vec3d>& value) {
+  return value ? json_of(*value) : Json(nullptr);
+}
+
+Json header(const char* command) {
+  return {{"schema", std::string("aerate.") + command},
+          {"schema_version", kReportSchemaVersion},
+          {"program", std::string("aerate ") + AERATE_VERSION}};
+}
+
+Json json_of(const Box3f& box) {
+  return {{"lower_mm", json_of(to_double(box.lower))}, {"upper_mm", json_of(to_double(box.upper))}};
+}
+
+Json json_of(const InputFacts& input) {
+  const Inspection& inspection = input.inspection;
+  return {{"path", input.path.string()},
+          {"format", input.format},
+          {"parts", input.part_count},
+          {"triangles", inspection.triangle_count},
+          {"vertices", inspection.vertex_count},
+          {"box", json_of(inspection.box)},
+          {"signed_volume_mm3", inspection.volume},
+          {"filled_volume_mm3", inspection.filled_volume},
+          {"area_mm2", inspection.area},
+          {"closed", inspection.closed()},
+          {"open_edges", inspection.open_edges},
+          {"misoriented_edges", inspection.misoriented_edges},
+          {"non_manifold_edges", inspection.non_manifold_edges},
+          {"degenerate_triangles", inspection.degenerate_triangles},
+          {"duplicate_triangles", inspection.duplicate_triangles},
+          {"holes", inspection.boundary_loops.size()},
+          {"shells", inspection.shells.size()},
+          {"overlapping_shells", inspection.overlapping_shells},
+          {"overlapped_volume_mm3", inspection.overlapped_volume}};
+}
+
+Json json_of(const PackingLimits& limits) {
+  return {{"wall_mm", limits.wall},
+          {"gap_mm", limits.gap},
+          {"min_radius_mm", limits.min_radius},
+          {"max_radius_mm", limits.max_radius}};
+}
+
+Json json_of(PackingMethod method, double density, const PackingStatistics& statistics) {
+  return {{"method", name_of(method)},
+          {"density", density},
+          {"candidates", statistics.candidates},
+          {"outside", statistics.outside},
+          {"overlapped_region", statistics.overlapped_region},
+          {"near_surface", statistics.near_surface},
+          {"below_min_radius", statistics.below_min_radius},
+          {"shrunk_by_verification", statistics.shrunk_by_verification},
+          {"dropped_by_verification", statistics.dropped_by_verification},
+          {"index_bytes", statistics.index_bytes}};
+}
+
+Json json_of(const Clearances& clearances) {
+  return {{"wall_mm", clearances.wall}, {"gap_mm", json_of(clearances.gap)}};
+}
+
+void add_closing(Json& json, const std::vector<StageCost>& stages, const std::vector<std::string>& notices) {
+  Json list = Json::array();
+  for (const StageCost& stage : stages)
+    list.push_back(
+        {{"name", stage.name}, {"seconds", stage.seconds}, {"peak_memory_bytes", stage.peak_bytes}});
+  const StageCost total = total_of(stages);
+  json["stages"] = list;
+  json["seconds"] = total.seconds;
+  json["peak_memory_bytes"] = total.peak_bytes;
+  json["notices"] = notices;
+}
+
+std::string dump(const Json& json) {
+  // File names may hold any bytes; what is not UTF-8 is replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json material_of(const HollowReport& report) {
+  const MaterialUse use = material_use(report.material, report.output);
+  return {{"name", report.material.name},
+          {"density_g_cm3", report.material.density_g_cm3},
+          {"price_per_kg", report.material.price_per_kg},
+          {"assumes", "solid material (100 % infill)"},
+          {"mass_before_g", use.mass_before_g},
+          {"mass_after_g", use.mass_after_g},
+          {"mass_saved_g", use.mass_before_g - use.mass_after_g},
+          {"cost_before", use.cost_before},
+          {"cost_after", use.cost_after},
+          {"cost_saved", use.cost_before - use.cost_after}};
+}
+
+}  // namespace
+
+std::string to_json(const HollowReport& report) {
+  const OutputFacts& output = report.output;
+  Json json = header("hollow");
+  json["input"] = json_of(report.input);
+  json["limits"] = json_of(report.limits);
+  json["limits"]["tolerance_mm"] = report.tolerance_asked;
+  json["limits"]["max_triangles"] = json_of(report.max_triangles);
+  json["packing"] = json_of(report.method, report.packing_density, report.packing_statistics);
+  json["surface"] = {{"mode", report.surface == OuterSurface::kept ? "kept" : "remeshed"},
+                     {"voxel_mm", json_of(report.voxel_size)},
+                     {"outer_deviation_mm", json_of(report.outer_deviation)}};
+  json["output"] = {{"path", output.path.string()},
+                    {"bytes", output.file_bytes},
+                    {"triangles", output.triangle_count},
+                    {"outer_triangles", output.outer_triangle_count},
+                    {"void_triangles", output.void_triangle_count}};
+  json["voids"] = {{"count", output.void_count},
+                   {"min_radius_mm", output.smallest_radius},
+                   {"max_radius_mm", output.largest_radius},
+                   {"tolerance_used_mm", report.tolerance_used},
+                   {"deviation_mm", output.void_deviation}};
+  json["measured"] = json_of(output.clearances);
+  json["volume"] = {{"before_mm3", output.volume_before},
+                    {"after_mm3", output.volume_after},
+                    {"removed_mm3", output.volume_removed},
+                    {"removed_percent", 100 * output.volume_removed / output.volume_before},
+                    {"estimated", report.volume_estimated}};
+  json["centre_of_mass"] = {{"before_mm", json_of(output.centre_of_mass_before)},
+                            {"after_mm", json_of(output.centre_of_mass_after)}};
+  json["material"] = material_of(report);
+  add_closing(json, report.stages, report.notices);
+  return dump(json);
+}
+
+std::string to_json(const PackReport& report) {
+  Json json = header("pack");
+  json["input"] = json_of(report.input);
+  json["limits"] = json_of(report.packing.limits);
+  json["packing"] = json_of(report.method, report.density, report.packing.statistics);
+  json["packing"]["spheres"] = report.packing.spheres.size();
+  json["measured"] = report.clearances ? json_of(*report.clearances) : Json(nullptr);
+  json["output"] = {{"path", report.output.string()}};
+  add_closing(json, report.stages, report.notices);
+  return dump(json);
+}
+
+std::string to_json(const InspectReport& report) {
+  const Inspection& inspection = report.input.inspection;
+  Json json = header("inspect");
+  json["input"] = json_of(report.input);
+  Json holes = Json::array();
+  for (const BoundaryLoop& loop : inspection.boundary_loops)
+    holes.push_back(
+        {{"edges", loop.edge_count}, {"centre_mm", json_of(loop.centre)}, {"diameter_mm", loop.diameter}});
+  json["holes"] = holes;
+  Json shells = Json::array();
+  for (const Shell& shell : inspection.shells)
+    shells.push_back({{"triangles", shell.triangle_count},
+                      {"signed_volume_mm3", shell.volume},
+                      {"box", json_of(shell.box)},
+                      {"closed", shell.closed}});
+  json["shells"] = shells;
+  if (report.self_intersections) {
+    Json places = Json::array();
+    for (const Vec3d place : report.self_intersections->places) places.push_back(json_of(place));
+    json["self_intersections"] = {{"pairs", report.self_intersections->pair_count}, {"places_mm", places}};
+  } else {
+    json["self_intersections"] = nullptr;
+  }
+  add_closing(json, report.stages, report.notices);
+  return dump(json);
+}
+
+}  // namespace aerate::cli

@@ -1,0 +1,195 @@
+#include "cli/report_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iterator>
+
+#include "pipeline/memory.h"
+
+namespace aerate::cli {
+namespace {
+
+// Writes "label      value" lines.
+class Lines {
+ public:
+  template <typename... Arguments>
+  void add(const char* label, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    fmt::format_to(std::back_inserter(text_), "{:<12}", label);
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
+    text_ += '\n';
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+// 1234567 -> "1,234,567"
+std::string grouped(std::size_t number) {
+  std::string digits = std::to_string(number);
+  for (std::ptrdiff_t at = std::ssize(digits) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), 1, ',');
+  return digits;
+}
+
+std::string point(Vec3d p) {
+  // Rounded first, so that nothing reads as -0.00.
+  for (double* coordinate : {&p.x, &p.y, &p.z}) *coordinate = std::round(*coordinate * 100) / 100 + 0.0;
+  return fmt::format("({:.2f}, {:.2f}, {:.2f})", p.x, p.y, p.z);
+}
+
+std::string size_of(const Box3f& box) {
+  const Vec3d size = to_double(box.upper) - to_double(box.lower);
+  return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", size.x, size.y, size.z);
+}
+
+std::string count_of(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", grouped(count), count == 1 ? one : many);
+}
+
+void add_input(Lines& lines, const InputFacts& input) {
+  lines.add("model", "{}: {}, {}, {}", input.path.filename().string(), input.format,
+            count_of(input.inspection.triangle_count, "triangle", "triangles"),
+            size_of(input.inspection.box));
+}
+
+void add_stages(Lines& lines, const std::vector<StageCost>& stages) {
+  std::string parts;
+  for (const StageCost& stage : stages)
+    parts += fmt::format("{}{} {:.2f}", parts.empty() ? "" : ", ", stage.name, stage.seconds);
+  const StageCost total = total_of(stages);
+  lines.add("time", "{:.2f} s ({}), memory {} at most", total.seconds, parts, format_bytes(total.peak_bytes));
+}
+
+// "0.620 to 3.500 mm"
+std::string radii(double smallest, double largest) {
+  const std::string from = fmt::format("{:.3f}", smallest);
+  const std::string to = fmt::format("{:.3f}", largest);
+  return from == to ? to + " mm" : from + " to " + to + " mm";
+}
+
+std::string gap_in_words(const Clearances& clearances) {
+  return clearances.gap ? fmt::format("{:.3f} mm", *clearances.gap) : std::string("none (one void)");
+}
+
+}  // namespace
+
+std::string to_text(const HollowReport& report) {
+  const OutputFacts& output = report.output;
+  Lines lines;
+  add_input(lines, report.input);
+  lines.add("voids", "{}, radius {}; {} packing, {:.2f} % of the model",
+            count_of(output.void_count, "sphere", "spheres"), radii(output.smallest_radius, output.largest_radius),
+            name_of(report.method), 100 * report.packing_density);
+  lines.add("removed", "{:.1f} of {:.1f} mm3 ({:.2f} %), {:.1f} mm3 left{}", output.volume_removed,
+            output.volume_before, 100 * output.volume_removed / output.volume_before, output.volume_after,
+            report.volume_estimated ? "; the model's volume is an estimate, since parts overlap" : "");
+  lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", output.clearances.wall,
+            report.limits.wall, gap_in_words(output.clearances), report.limits.gap);
+  if (output.centre_of_mass_before && output.centre_of_mass_after) {
+    lines.add("balance", "centre of mass {} -> {} mm", point(*output.centre_of_mass_before),
+              point(*output.centre_of_mass_after));
+  }
+  const MaterialUse use = material_use(report.material, output);
+  lines.add("material", "{} {:.1f} -> {:.1f} g, cost {:.2f} -> {:.2f} (at {:g} g/cm3 and {:g} a kg)",
+            report.material.name, use.mass_before_g, use.mass_after_g, use.cost_before, use.cost_after,
+            report.material.density_g_cm3, report.material.price_per_kg);
+  lines.add("", "as solid material (100 % infill); with sparse infill small voids cost more than they save");
+  lines.add("output", "{}: {} ({} outside, {}), {}", output.path.filename().string(),
+            count_of(output.triangle_count, "triangle", "triangles"), grouped(output.outer_triangle_count),
+            report.surface == OuterSurface::kept ? "kept as they were" : "remeshed",
+            format_bytes(static_cast<double>(output.file_bytes)));
+  if (report.voxel_size && report.outer_deviation) {
+    lines.add("remeshed", "voxels of {:.3g} mm, at most {:.3g} mm from the model's surface",
+              *report.voxel_size, *report.outer_deviation);
+  }
+  lines.add("tolerance", "{:.3g} mm; void surfaces are at most {:.3g} mm inside their spheres",
+            report.tolerance_used, output.void_deviation);
+  add_stages(lines, report.stages);
+  return lines.take();
+}
+
+std::string to_text(const PackReport& report) {
+  const std::vector<Sphere>& spheres = report.packing.spheres;
+  const auto [smallest, largest] = std::minmax_element(
+      spheres.begin(), spheres.end(), [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
+  Lines lines;
+  add_input(lines, report.input);
+  lines.add("spheres", "{}, radius {}; {} packing, {:.2f} % of the model",
+            count_of(spheres.size(), "sphere", "spheres"), radii(smallest->radius, largest->radius),
+            name_of(report.method), 100 * report.density);
+  if (report.clearances) {
+    lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})",
+              report.clearances->wall, report.packing.limits.wall, gap_in_words(*report.clearances),
+              report.packing.limits.gap);
+  }
+  const PackingStatistics& statistics = report.packing.statistics;
+  lines.add("places",
+            "{} tried; {} outside, {} near the surface, {} below the smallest radius, {} where parts "
+            "overlap, {} dropped by the last check",
+            grouped(statistics.candidates), grouped(statistics.outside), grouped(statistics.near_surface),
+            grouped(statistics.below_min_radius), grouped(statistics.overlapped_region),
+            grouped(statistics.dropped_by_verification));
+  lines.add("output", "{}", report.output.filename().string());
+  add_stages(lines, report.stages);
+  return lines.take();
+}
+
+std::string to_text(const InspectReport& report) {
+  const Inspection& inspection = report.input.inspection;
+  Lines lines;
+  add_input(lines, report.input);
+  lines.add("parts", "{} in the file; {}", report.input.part_count,
+            count_of(inspection.vertex_count, "vertex", "vertices"));
+  const Vec3d lower = to_double(inspection.box.lower);
+  const Vec3d upper = to_double(inspection.box.upper);
+  lines.add("box", "{} to {} mm", point(lower), point(upper));
+  lines.add("volume", "{:.6g} mm3 signed; a slicer fills {:.6g} mm3", inspection.volume,
+            inspection.filled_volume);
+  lines.add("area", "{:.6g} mm2", inspection.area);
+  lines.add("closed", "{}", inspection.closed() ? "yes" : "no");
+  lines.add("edges", "{} open, {} misoriented, {} with more than two triangles",
+            grouped(inspection.open_edges), grouped(inspection.misoriented_edges),
+            grouped(inspection.non_manifold_edges));
+  lines.add("triangles", "{} without area, {} doubled", grouped(inspection.degenerate_triangles),
+            grouped(inspection.duplicate_triangles));
+
+  constexpr std::size_t kMostListed = 10;
+  for (std::size_t i = 0; i < std::min(kMostListed, inspection.boundary_loops.size()); ++i) {
+    const BoundaryLoop& loop = inspection.boundary_loops[i];
+    lines.add(i == 0 ? "holes" : "", "near {} mm, {:.3g} mm across, {}", point(loop.centre), loop.diameter,
+              count_of(loop.edge_count, "edge", "edges"));
+  }
+  if (inspection.boundary_loops.size() > kMostListed)
+    lines.add("", "and {} more", inspection.boundary_loops.size() - kMostListed);
+
+  lines.add("shells", "{}, {} of them overlapping ({:.4g} mm3)", grouped(inspection.shells.size()),
+            grouped(inspection.overlapping_shells), inspection.overlapped_volume);
+  for (std::size_t i = 0; i < std::min(kMostListed, inspection.shells.size()); ++i) {
+    const Shell& shell = inspection.shells[i];
+    lines.add("", "{}, {:.4g} mm3, {}{}", count_of(shell.triangle_count, "triangle", "triangles"),
+              shell.volume, size_of(shell.box), shell.closed ? "" : ", open");
+  }
+  if (inspection.shells.size() > kMostListed)
+    lines.add("", "and {} more", inspection.shells.size() - kMostListed);
+
+  if (report.self_intersections) {
+    lines.add("crossings", "{} that intersect",
+              count_of(report.self_intersections->pair_count, "pair of triangles", "pairs of triangles"));
+    for (const Vec3d place : report.self_intersections->places) lines.add("", "near {} mm", point(place));
+  }
+  if (inspection.closed()) {
+    lines.add("use", "{}",
+              inspection.volume < 0 ? "inside out; 'aerate hollow' turns it"
+                                    : "'aerate hollow' can keep this surface as it is");
+  } else if (inspection.open_edges > 0) {
+    lines.add("use", "holes: 'aerate hollow --surface remesh' closes small ones (see --max-hole)");
+  } else {
+    lines.add("use", "triangles face opposite ways: make the normals consistent in a mesh editor");
+  }
+  add_stages(lines, report.stages);
+  return lines.take();
+}
+
+}  // namespace aerate::cli

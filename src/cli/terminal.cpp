@@ -1,0 +1,93 @@
+#include "cli/terminal.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace aerate::cli {
+namespace {
+
+bool is_set(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr && *value != '\0';
+}
+
+bool stderr_is_terminal() {
+  const char* terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) != 0 && (terminal == nullptr || std::string_view(terminal) != "dumb");
+}
+
+// https://no-color.org: any value but an empty one forbids colour.
+bool colour_allowed() {
+  return stderr_is_terminal() && !is_set("NO_COLOR");
+}
+
+enum class Tone { error, notice, faint };
+
+std::string toned(std::string_view text, Tone tone) {
+  if (!colour_allowed()) return std::string(text);
+  const char* code = tone == Tone::error ? "1;31" : tone == Tone::notice ? "33" : "2";
+  return fmt::format("\x1b[{}m{}\x1b[0m", code, text);
+}
+
+void print_to_stderr(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+TerminalMonitor::TerminalMonitor(InterruptGuard& interrupt, Verbosity verbosity)
+    : interrupt_(interrupt),
+      verbosity_(verbosity),
+      bar_allowed_(verbosity == Verbosity::normal && stderr_is_terminal()) {}
+
+TerminalMonitor::~TerminalMonitor() {
+  clear();
+}
+
+void TerminalMonitor::stage(std::string_view name) {
+  stage_ = name;
+  drawn_percent_ = -1;
+  draw_bar(0);
+}
+
+void TerminalMonitor::progress(double fraction) {
+  draw_bar(fraction);
+}
+
+void TerminalMonitor::notice(std::string_view text) {
+  if (verbosity_ == Verbosity::quiet) return;
+  clear();
+  print_to_stderr(fmt::format("{} {}\n", toned("aerate: note:", Tone::notice), text));
+}
+
+void TerminalMonitor::check_interrupted() {
+  if (interrupt_.interrupted()) throw InterruptedError();
+}
+
+void TerminalMonitor::draw_bar(double fraction) {
+  if (!bar_allowed_) return;
+  const int percent = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * 100);
+  if (percent == drawn_percent_) return;
+  drawn_percent_ = percent;
+  constexpr int kWidth = 30;
+  const auto filled = static_cast<std::size_t>(percent * kWidth / 100);
+  print_to_stderr(fmt::format("\r\x1b[K{:<18} [{}{}] {:3} %", stage_, std::string(filled, '#'),
+                              toned(std::string(kWidth - filled, '.'), Tone::faint), percent));
+}
+
+void TerminalMonitor::clear() {
+  if (!bar_allowed_ || drawn_percent_ < 0) return;
+  print_to_stderr("\r\x1b[K");
+  drawn_percent_ = -1;
+}
+
+void print_error(std::string_view what, std::string_view hint) {
+  print_to_stderr(fmt::format("{} {}\n", toned("aerate: error:", Tone::error), what));
+  if (!hint.empty()) print_to_stderr(fmt::format("{} {}\n", toned("aerate: hint:", Tone::notice), hint));
+}
+
+}  // namespace aerate::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "core/monitor.h"
+#include "printing/write.h"
+
+namespace aerate {
+
+// A pending file that the monitor knows of for as long as it is pending, so that it does not stay behind when
+// the process is ended.
+class AnnouncedFile {
+ public:
+  AnnouncedFile(const std::filesystem::path& target, Monitor& monitor);
+  ~AnnouncedFile();
+  AnnouncedFile(const AnnouncedFile&) = delete;
+  AnnouncedFile& operator=(const AnnouncedFile&) = delete;
+
+  PendingFile& file() { return *file_; }
+
+  // Fills the file with `text` and makes it the target. Throws FailureError with the system's reason.
+  void commit_text(std::string_view text);
+
+ private:
+  Monitor& monitor_;
+  std::optional<PendingFile> file_;
+};
+
+// Throws UsageError if writing to `output` would replace `model`.
+void require_other_file(const std::filesystem::path& model, const std::filesystem::path& output);
+
+}  // namespace aerate

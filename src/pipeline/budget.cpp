@@ -1,0 +1,62 @@
+#include "pipeline/budget.h"
+
+#include <fmt/format.h>
+#include <string>
+
+#include "core/error.h"
+#include "packing/hexagonal.h"
+#include "pipeline/memory.h"
+#include "printing/carve.h"
+
+namespace aerate {
+namespace {
+
+// Memory for each triangle of the result while it is written, read back and checked: the mesh twice over
+// (18 bytes a triangle and copies of it while it is welded), the file as it is read, edges as they are
+// matched. Measured on the dragon of 871,414 triangles; docs/decisions.md.
+constexpr double kBytesPerOutputTriangle = 500;
+
+void require(double needed, const std::string& what, const std::string& hint) {
+  const double available = available_memory_bytes();
+  if (needed <= available) return;
+  throw UsageError(fmt::format("{} would need about {}, and {} of memory are available", what,
+                               format_bytes(needed), format_bytes(available)),
+                   hint);
+}
+
+}  // namespace
+
+void require_memory_for_packing(const Mesh& mesh, const PackingLimits& limits, PackingMethod method) {
+  double needed = 0;
+  switch (method) {
+    case PackingMethod::hexagonal:
+      needed = estimate_hexagonal_bytes(mesh, limits);
+      break;
+  }
+  require(needed, fmt::format("packing spheres of radius {:.3g} mm into this model", limits.max_radius),
+          "give a larger --max-radius: the number of spheres falls with its cube");
+}
+
+void require_memory_for_voids(const VoidPlan& plan, double tolerance, std::size_t outer_triangles) {
+  const std::size_t triangles =
+      outer_triangles + estimate_void_triangles(plan, CarveOptions{.tolerance = tolerance});
+  require(static_cast<double>(triangles) * kBytesPerOutputTriangle,
+          fmt::format("a result of {} triangles ({} voids)", triangles, plan.spheres.size()),
+          "give a larger --tolerance or --min-radius, or limit it with --max-triangles");
+}
+
+double tolerance_for(const VoidPlan& plan, double asked, std::size_t outer_triangles,
+                     std::optional<std::size_t> max_triangles) {
+  if (!max_triangles) return asked;
+  const std::size_t for_voids = *max_triangles > outer_triangles ? *max_triangles - outer_triangles : 0;
+  const auto loosened = loosen_tolerance(plan, CarveOptions{.tolerance = asked}, for_voids);
+  if (!loosened) {
+    throw UsageError(fmt::format("--max-triangles {}: the model has {} triangles of its own, and {} voids take "
+                                 "more than the {} that are left, however coarse they are",
+                                 *max_triangles, outer_triangles, plan.spheres.size(), for_voids),
+                     "allow more triangles, or give a larger --min-radius for fewer voids");
+  }
+  return *loosened;
+}
+
+}  // namespace aerate

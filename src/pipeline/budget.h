@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+
+#include "core/mesh.h"
+#include "core/void_plan.h"
+#include "mesh/inspect.h"
+#include "pipeline/options.h"
+
+namespace aerate {
+
+// Refuses a job that memory cannot hold before it starts: throws UsageError with the estimate, what there is
+// and what to change.
+void require_memory_for_packing(const Mesh& mesh, const PackingLimits& limits, PackingMethod method);
+
+// The same for what is made of the packing: the void surfaces, the file and its check. `outer_triangles` is
+// the size of the model's own surface.
+void require_memory_for_voids(const VoidPlan& plan, double tolerance, std::size_t outer_triangles);
+
+// The smallest tolerance, but no smaller than `asked`, with which the result has at most `max_triangles`.
+// Throws UsageError if none does. mm.
+double tolerance_for(const VoidPlan& plan, double asked, std::size_t outer_triangles,
+                     std::optional<std::size_t> max_triangles);
+
+}  // namespace aerate

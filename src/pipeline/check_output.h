@@ -1,0 +1,36 @@
+#pragma once
+
+#include "core/mesh.h"
+#include "core/packing.h"
+#include "core/solid.h"
+#include "core/void_plan.h"
+#include "mesh/inspect.h"
+#include "pipeline/report.h"
+
+namespace aerate {
+
+// What a written file is held against.
+struct ExpectedOutput {
+  const Solid& solid;            // what was written
+  const Mesh& model;             // what was packed
+  const Inspection& inspection;  // of `model`: flaws that the output may keep
+  const VoidPlan& plan;
+  const PackingLimits& limits;
+  double tolerance = 0;  // mm
+  OuterSurface surface = OuterSurface::kept;
+};
+
+// Checks and measures a mesh that was read back from disk:
+//   - every triangle is the one that was written, coordinate for coordinate; if the surface was kept, the
+//   first
+//     ones are the model's;
+//   - the outer part is closed, without misoriented edges, with no more non-manifold edges than the model;
+//   - each void is one shell of its own: closed, 2-manifold, a topological sphere, inward, with no vertex of
+//     another shell;
+//   - each void lies within [-tolerance, 0] of its planned ball, and so does its volume;
+//   - the balls round the voids keep the wall and the gap, where the winding number of the outer part is 1;
+//   - the volumes add up.
+// Throws FailureError that says which of these does not hold.
+OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected);
+
+}  // namespace aerate

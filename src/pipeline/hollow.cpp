@@ -1,0 +1,96 @@
+#include "pipeline/hollow.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <utility>
+
+#include "core/error.h"
+#include "core/void_plan.h"
+#include "pipeline/announced_file.h"
+#include "pipeline/budget.h"
+#include "pipeline/check_output.h"
+#include "pipeline/job_log.h"
+#include "pipeline/pack.h"
+#include "pipeline/prepare.h"
+#include "pipeline/read_back.h"
+#include "printing/carve.h"
+#include "printing/remesh.h"
+#include "printing/write.h"
+
+namespace aerate {
+namespace {
+
+Solid carve(PreparedModel& model, const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) {
+  if (model.level_set) return model.level_set->subtract(plan, options, monitor);
+  return carve_keeping_surface(model.mesh, plan, options, monitor);
+}
+
+}  // namespace
+
+HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
+  const MeshFormat format = mesh_format_of(options.output);
+  require_other_file(options.model, options.output);
+
+  JobLog log(monitor);
+  HollowReport report;
+  report.limits = options.limits;
+  report.method = options.method;
+  report.tolerance_asked = options.tolerance;
+  report.max_triangles = options.max_triangles;
+  report.material = options.material;
+
+  PreparedModel model = load_and_inspect(options.model, options.load, log);
+  // Made before the long stages, so that a place that cannot be written to is found at once.
+  AnnouncedFile pending(options.output, log);
+  model = make_usable(std::move(model),
+                      {options.surface, options.max_hole,
+                       options.voxel_size.value_or(default_voxel_size(options.limits, model.inspection.box))},
+                      log);
+  report.input = model.input;
+  report.surface = model.level_set ? OuterSurface::remeshed : OuterSurface::kept;
+  if (model.level_set) report.voxel_size = model.level_set->voxel_size();
+  report.outer_deviation = model.outer_deviation;
+  report.volume_estimated = model.inspection.overlapped_volume > 0;
+
+  const Packing packing = pack_model(model, options.limits, options.method, log);
+  report.packing_statistics = packing.statistics;
+  report.packing_density = total_volume(packing) / model.inspection.filled_volume;
+
+  const VoidPlan plan{packing.spheres};
+  const std::size_t outer_triangles = model.mesh.triangles.size();
+  report.tolerance_used = tolerance_for(plan, options.tolerance, outer_triangles, options.max_triangles);
+  if (report.tolerance_used > options.tolerance)
+    log.notice(fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
+                           report.tolerance_used, options.tolerance, *options.max_triangles));
+  require_memory_for_voids(plan, report.tolerance_used, outer_triangles);
+
+  log.stage("carve");
+  const Solid solid = carve(model, plan, {.tolerance = report.tolerance_used}, log);
+  log.check_interrupted();
+
+  log.stage("write");
+  write_mesh(solid.mesh, pending.file(), format);
+  log.check_interrupted();
+
+  log.stage("check");
+  const Mesh written = read_back(pending.file().path(), format);
+  log.check_interrupted();
+  report.output = check_output(written, {.solid = solid,
+                                              .model = model.mesh,
+                                              .inspection = model.inspection,
+                                              .plan = plan,
+                                              .limits = options.limits,
+                                              .tolerance = report.tolerance_used,
+                                              .surface = report.surface});
+  report.output.path = options.output;
+  report.output.file_bytes = std::filesystem::file_size(pending.file().path());
+  log.check_interrupted();
+  pending.file().commit();
+
+  report.stages = log.finish();
+  report.notices = log.notices();
+  return report;
+}
+
+}  // namespace aerate

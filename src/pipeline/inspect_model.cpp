@@ -1,0 +1,22 @@
+#include "pipeline/inspect_model.h"
+
+#include "pipeline/job_log.h"
+#include "pipeline/prepare.h"
+
+namespace aerate {
+
+InspectReport inspect_model(const InspectOptions& options, Monitor& monitor) {
+  JobLog log(monitor);
+  InspectReport report;
+  const PreparedModel model = load_and_inspect(options.model, options.load, log);
+  report.input = model.input;
+  if (options.self_intersections == SelfIntersectionSearch::on) {
+    log.stage("self-intersections");
+    report.self_intersections = find_self_intersections(model.mesh);
+  }
+  report.stages = log.finish();
+  report.notices = log.notices();
+  return report;
+}
+
+}  // namespace aerate

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/monitor.h"
+#include "mesh/load.h"
+#include "pipeline/report.h"
+
+namespace aerate {
+
+enum class SelfIntersectionSearch { off, on };
+
+struct InspectOptions {
+  std::filesystem::path model;
+  LoadOptions load;
+  SelfIntersectionSearch self_intersections = SelfIntersectionSearch::off;
+};
+
+// Loads a model and looks at it; nothing about it is an error but what load_model throws.
+InspectReport inspect_model(const InspectOptions& options, Monitor& monitor);
+
+}  // namespace aerate

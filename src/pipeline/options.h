@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/packing.h"
+#include "mesh/load.h"
+
+namespace aerate {
+
+// Which surface the result has outside.
+enum class SurfaceMode {
+  automatic,  // keep, or remesh with a notice where the model cannot be kept
+  keep,       // the model's own triangles, every one as it is
+  remesh,     // the model becomes a level set and is meshed anew
+};
+
+enum class PackingMethod { hexagonal };
+
+// As on the command line.
+const char* name_of(PackingMethod method);
+
+// Limits for a 0.4 mm nozzle, and why:
+//   wall 1.2 mm: three extrusion lines; gap 0.9 mm: two extrusion lines, the least that separates two voids;
+//   max_radius 3.5 mm: the ceiling of a larger sphere, where it is flatter than 45 degrees, is wider than the
+//   5 mm that a printer bridges well (1.41 r); min_radius 0.62 mm: 1 mm3, below which slicers drop shells.
+inline constexpr PackingLimits kDefaultLimits{.wall = 1.2, .gap = 0.9, .min_radius = 0.62, .max_radius = 3.5};
+
+// What the figures for mass and cost are computed with.
+struct MaterialFigures {
+  std::string name;
+  double density_g_cm3 = 0;
+  double price_per_kg = 0;  // in the user's own currency
+};
+
+struct PackOptions {
+  std::filesystem::path model;
+  std::filesystem::path output;  // .csv
+  LoadOptions load;
+  PackingLimits limits = kDefaultLimits;
+  PackingMethod method = PackingMethod::hexagonal;
+};
+
+struct HollowOptions {
+  std::filesystem::path model;
+  std::filesystem::path output;
+  LoadOptions load;
+  PackingLimits limits = kDefaultLimits;
+  PackingMethod method = PackingMethod::hexagonal;
+  SurfaceMode surface = SurfaceMode::automatic;
+
+  // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.
+  double tolerance = 0.05;
+  // The tolerance is loosened until the result has at most so many triangles.
+  std::optional<std::size_t> max_triangles;
+  // Edge of the voxels when remeshing, mm; chosen from the limits if not given.
+  std::optional<double> voxel_size;
+  // Remeshing closes holes up to this diameter, mm; a tenth of the model's diagonal if not given.
+  std::optional<double> max_hole;
+
+  MaterialFigures material;
+};
+
+}  // namespace aerate

@@ -1,0 +1,104 @@
+#include "pipeline/pack.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+#include "core/error.h"
+#include "packing/hexagonal.h"
+#include "packing/verify.h"
+#include "pipeline/announced_file.h"
+#include "pipeline/budget.h"
+#include "pipeline/job_log.h"
+#include "pipeline/sphere_table.h"
+
+namespace aerate {
+namespace {
+
+Packing pack_unverified(const Mesh& mesh, const PackingLimits& limits, PackingMethod method,
+                        Monitor& monitor) {
+  switch (method) {
+    case PackingMethod::hexagonal:
+      return pack_hexagonal(mesh, limits, monitor);
+  }
+  throw FailureError("unknown packing method");
+}
+
+// Says what would fit, and which limit stands in the way.
+[[noreturn]] void refuse_empty(const PreparedModel& model, const PackingLimits& limits) {
+  const std::string file = model.input.path.filename().string();
+  const Sphere largest = largest_inscribed_sphere(model.mesh);
+  const std::string place =
+      fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", largest.centre.x, largest.centre.y, largest.centre.z);
+  const double fitting = largest.radius - limits.wall;
+  if (fitting <= 0) {
+    throw NothingToRemoveError(
+        fmt::format("{}: nothing to remove: the model is thinner than twice the wall of {:.3g} mm; without "
+                    "any wall the largest sphere that fits has radius {:.3g} mm, near {}",
+                    file, limits.wall, largest.radius, place),
+        fmt::format("give a --wall well below {:.3g} mm", largest.radius));
+  }
+  if (fitting < limits.min_radius) {
+    throw NothingToRemoveError(
+        fmt::format("{}: nothing to remove: with a wall of {:.3g} mm the largest sphere that fits has radius "
+                    "{:.3g} mm, near {}, which is less than --min-radius {:.3g} mm",
+                    file, limits.wall, fitting, place, limits.min_radius),
+        "give a smaller --wall or --min-radius");
+  }
+  throw NothingToRemoveError(
+      fmt::format("{}: nothing to remove: no place of the packing's lattice fits, although with a wall of "
+                  "{:.3g} mm a sphere of radius {:.3g} mm fits near {}",
+                  file, limits.wall, fitting, place),
+      fmt::format("give a --max-radius of about {:.2g} mm or less", fitting / 2));
+}
+
+}  // namespace
+
+Packing pack_model(const PreparedModel& model, const PackingLimits& limits, PackingMethod method,
+                   Monitor& monitor) {
+  require_memory_for_packing(model.mesh, limits, method);
+  monitor.stage("pack");
+  Packing packing = pack_unverified(model.mesh, limits, method, monitor);
+  monitor.check_interrupted();
+
+  monitor.stage("verify");
+  packing = verify_packing(model.mesh, std::move(packing));
+  monitor.check_interrupted();
+  if (packing.spheres.empty()) refuse_empty(model, limits);
+
+  if (model.inspection.overlapped_volume > 0 && packing.statistics.overlapped_region > 0)
+    monitor.notice(
+        fmt::format("parts of the model overlap in about {:.3g} mm3, which stay solid; --surface "
+                    "remesh unites the parts first",
+                    model.inspection.overlapped_volume));
+  return packing;
+}
+
+PackReport pack(const PackOptions& options, Monitor& monitor) {
+  if (options.output.extension() != ".csv") {
+    throw UsageError(fmt::format("{}: spheres are written as .csv", options.output.string()),
+                     "give a name that ends in .csv");
+  }
+  require_other_file(options.model, options.output);
+
+  JobLog log(monitor);
+  PackReport report;
+  report.method = options.method;
+  report.output = options.output;
+  PreparedModel model = load_and_inspect(options.model, options.load, log);
+  AnnouncedFile table(options.output, log);
+  model = make_usable(std::move(model), {.mode = SurfaceMode::keep}, log);
+  report.input = model.input;
+  report.packing = pack_model(model, options.limits, options.method, log);
+  report.density = total_volume(report.packing) / model.inspection.filled_volume;
+
+  log.stage("measure");
+  report.clearances = measure_clearances(model.mesh, report.packing.spheres);
+  log.stage("write");
+  table.commit_text(sphere_table_csv(report.packing));
+  report.stages = log.finish();
+  report.notices = log.notices();
+  return report;
+}
+
+}  // namespace aerate

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "core/mesh.h"
+#include "core/monitor.h"
+#include "mesh/inspect.h"
+#include "mesh/load.h"
+#include "pipeline/options.h"
+#include "pipeline/report.h"
+#include "printing/remesh.h"
+
+namespace aerate {
+
+// A model that voids can be packed into.
+struct PreparedModel {
+  InputFacts input;       // as it came from the file
+  Mesh mesh;              // closed, outward: what is packed, and the outer surface of the result
+  Inspection inspection;  // of `mesh`
+  // When the model was remeshed: `mesh` is this level set's zero set.
+  std::optional<ModelLevelSet> level_set;
+  std::optional<double> outer_deviation;  // see HollowReport
+};
+
+// Voxel edge for remeshing that leaves room for the wall and the gap, mm.
+double default_voxel_size(const PackingLimits& limits, const Box3f& box);
+
+// How the surface may be changed to make the model usable.
+struct SurfacePolicy {
+  SurfaceMode mode = SurfaceMode::keep;
+  std::optional<double> max_hole = {};  // mm; see HollowOptions
+  double voxel_size = 0;                // mm, for remeshing
+};
+
+// Reads and inspects a model; notes several parts. Throws what load_model throws.
+PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOptions& options,
+                               Monitor& monitor);
+
+// Turns what is inside out, and remeshes if the policy says so. Throws MeshError, naming what is wrong and
+// where, for a model that bounds no solid or that the policy does not let mend.
+PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor);
+
+}  // namespace aerate

@@ -1,0 +1,27 @@
+#include "pipeline/report.h"
+
+#include <algorithm>
+
+namespace aerate {
+
+MaterialUse material_use(const MaterialFigures& material, const OutputFacts& output) {
+  const double grams_per_mm3 = material.density_g_cm3 / 1000;
+  const double price_per_gram = material.price_per_kg / 1000;
+  MaterialUse use;
+  use.mass_before_g = output.volume_before * grams_per_mm3;
+  use.mass_after_g = output.volume_after * grams_per_mm3;
+  use.cost_before = use.mass_before_g * price_per_gram;
+  use.cost_after = use.mass_after_g * price_per_gram;
+  return use;
+}
+
+StageCost total_of(const std::vector<StageCost>& stages) {
+  StageCost total{.name = "total"};
+  for (const StageCost& stage : stages) {
+    total.seconds += stage.seconds;
+    total.peak_bytes = std::max(total.peak_bytes, stage.peak_bytes);
+  }
+  return total;
+}
+
+}  // namespace aerate

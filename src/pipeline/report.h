@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/packing.h"
+#include "mesh/inspect.h"
+#include "packing/verify.h"
+#include "pipeline/options.h"
+
+namespace aerate {
+
+// Wall-clock time of one stage, and the most memory the process had held when it ended.
+struct StageCost {
+  std::string name;
+  double seconds = 0;
+  double peak_bytes = 0;
+};
+
+// A model as it came from its file.
+struct InputFacts {
+  std::filesystem::path path;
+  std::string format;
+  std::size_t part_count = 1;
+  Inspection inspection;
+};
+
+enum class OuterSurface { kept, remeshed };
+
+// What was read back from the written file, and measured there. Lengths in mm, volumes in mm3.
+struct OutputFacts {
+  std::filesystem::path path;
+  std::size_t file_bytes = 0;
+  std::size_t triangle_count = 0;
+  std::size_t outer_triangle_count = 0;
+  std::size_t void_triangle_count = 0;
+  std::size_t void_count = 0;
+
+  // What a slicer fills: without the voids (the outer surface alone) and with them.
+  double volume_before = 0;
+  double volume_after = 0;
+  double volume_removed = 0;
+
+  // Each void's radius is that of the ball round its planned centre that holds its vertices.
+  double smallest_radius = 0;
+  double largest_radius = 0;
+  // Between those balls and the outer surface, and between each other: the real clearances are at least
+  // these.
+  Clearances clearances;
+  // Largest depth by which a void stays inside its planned ball.
+  double void_deviation = 0;
+
+  // Absent where parts of the model overlap: the surface integral would count the overlap twice.
+  std::optional<Vec3d> centre_of_mass_before;
+  std::optional<Vec3d> centre_of_mass_after;
+};
+
+// Everything that `hollow` tells; rendered as text and as JSON by the command line.
+struct HollowReport {
+  InputFacts input;
+  PackingLimits limits;
+  PackingMethod method = PackingMethod::hexagonal;
+  PackingStatistics packing_statistics;
+  double packing_density = 0;  // volume of the planned balls over that of the packed model
+
+  OuterSurface surface = OuterSurface::kept;
+  // When remeshed: voxel edge, and the largest distance of a new vertex from the model as it was read. mm.
+  std::optional<double> voxel_size;
+  std::optional<double> outer_deviation;
+
+  double tolerance_asked = 0;
+  double tolerance_used = 0;
+  std::optional<std::size_t> max_triangles;
+
+  OutputFacts output;
+  // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
+  bool volume_estimated = false;
+
+  MaterialFigures material;
+  std::vector<StageCost> stages;
+  std::vector<std::string> notices;
+};
+
+// Mass and cost of the solid material (100 % infill) before and after.
+struct MaterialUse {
+  double mass_before_g = 0;
+  double mass_after_g = 0;
+  double cost_before = 0;
+  double cost_after = 0;
+};
+MaterialUse material_use(const MaterialFigures& material, const OutputFacts& output);
+
+// All stages together: the times added, the largest peak.
+StageCost total_of(const std::vector<StageCost>& stages);
+
+struct PackReport {
+  InputFacts input;
+  std::filesystem::path output;
+  PackingMethod method = PackingMethod::hexagonal;
+  Packing packing;
+  double density = 0;
+  std::optional<Clearances> clearances;  // measured, fp64
+  std::vector<StageCost> stages;
+  std::vector<std::string> notices;
+};
+
+struct InspectReport {
+  InputFacts input;
+  std::optional<SelfIntersections> self_intersections;
+  std::vector<StageCost> stages;
+  std::vector<std::string> notices;
+};
+
+}  // namespace aerate

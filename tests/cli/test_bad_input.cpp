@@ -1,0 +1,331 @@
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+#include <string>
+#include <sys/mount.h>
+#include <vector>
+
+#include "tests/cli/job.h"
+#include "tests/support/caught.h"
+
+// What a user with a broken file, a full disk or a wrong flag meets: the exit code, a message that says what
+// is wrong, and no file left behind.
+namespace aerate::test {
+namespace {
+
+constexpr int kFailure = 1;
+constexpr int kUsage = 2;
+constexpr int kUnreadable = 3;
+constexpr int kUnusable = 4;
+constexpr int kNothing = 5;
+
+void expect_refused(const Job& job, const ProcessResult& result, int exit_code,
+                    const std::vector<std::string>& said) {
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  EXPECT_TRUE(contains(result.err, "aerate: error: "));
+  for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+std::string stl_with(float coordinate) {
+  Mesh mesh = block();
+  mesh.positions[3].y = coordinate;
+  return to_binary_stl(mesh);
+}
+
+TEST(BadInput, MissingFile) {
+  const Job job;
+  expect_refused(job, run(job.hollow(job.folder() / "nowhere.stl")), kUnreadable, {"nowhere.stl"});
+}
+
+TEST(BadInput, Directory) {
+  const Job job;
+  std::filesystem::create_directory(job.folder() / "folder.stl");
+  expect_refused(job, run(job.hollow(job.folder() / "folder.stl")), kUnreadable, {"folder.stl", "directory"});
+}
+
+TEST(BadInput, EmptyFile) {
+  for (const char* ending : {"stl", "obj", "ply", "off", "3mf"}) {
+    const Job job;
+    const auto model = job.input(std::string("empty.") + ending, "");
+    expect_refused(job, run(job.hollow(model)), kUnreadable, {"empty.", "empty"});
+  }
+}
+
+TEST(BadInput, TruncatedBinaryStl) {
+  const Job job;
+  std::string bytes = to_binary_stl(block());
+  bytes.resize(bytes.size() - 120);
+  expect_refused(job, run(job.hollow(job.input("cut.stl", bytes))), kUnreadable, {"cut.stl", "12"});
+}
+
+TEST(BadInput, WrongTriangleCount) {
+  for (const std::uint32_t count : {11U, 13U, 4000000000U}) {
+    const Job job;
+    std::string bytes = to_binary_stl(block());
+    std::memcpy(bytes.data() + 80, &count, sizeof(count));
+    expect_refused(job, run(job.hollow(job.input("count.stl", bytes))), kUnreadable,
+                   {"count.stl", std::to_string(count)});
+  }
+}
+
+TEST(BadInput, CoordinatesThatAreNoNumbers) {
+  const Job job;
+  const auto nan = job.input("nan.stl", stl_with(std::numeric_limits<float>::quiet_NaN()));
+  const auto infinite = job.input("inf.stl", stl_with(-std::numeric_limits<float>::infinity()));
+  expect_refused(job, run(job.hollow(nan)), kUnreadable, {"nan.stl"});
+  expect_refused(job, run(job.hollow(infinite)), kUnreadable, {"inf.stl"});
+}
+
+TEST(BadInput, RandomBytesWithEachEnding) {
+  std::mt19937 random(7);
+  for (const char* ending : {"stl", "obj", "ply", "off", "3mf"}) {
+    for (const std::size_t size : {std::size_t{3}, std::size_t{200}, std::size_t{20000}}) {
+      const Job job;
+      std::string bytes(size, '\0');
+      for (char& byte : bytes) byte = static_cast<char>(random());
+      const auto model = job.input(std::string("noise.") + ending, bytes);
+      expect_refused(job, run(job.hollow(model)), kUnreadable, {"noise."});
+    }
+  }
+}
+
+TEST(BadInput, UnknownEnding) {
+  const Job job;
+  const auto model = job.input("model.step", "ISO-10303-21;");
+  expect_refused(job, run(job.hollow(model)), kUnreadable, {"model.step"});
+}
+
+// A block without one of its sides: a hole as large as the model.
+Mesh open_block() {
+  Mesh mesh = block();
+  mesh.triangles.resize(mesh.triangles.size() - 2);  // x = 30
+  return mesh;
+}
+
+// A sphere with one small triangle missing.
+Mesh pricked_sphere() {
+  Mesh mesh = make_uv_sphere(15, 40, 60);
+  mesh.triangles.erase(mesh.triangles.begin() + 1500);
+  return mesh;
+}
+
+TEST(BadInput, OpenMeshSaysWhereTheHoleIs) {
+  const Job job;
+  const auto model = job.input("open.stl", open_block());
+  const std::vector<std::string> said{"open.stl", "4 boundary edges form 1 hole near (30.0, 15.0, 15.0) mm",
+                                      "42.4 mm across", "--max-hole"};
+  for (const char* surface : {"auto", "keep", "remesh"})
+    expect_refused(job, run(job.hollow(model, {"--surface", surface})), kUnusable, said);
+}
+
+TEST(BadInput, SmallHoleIsClosedWhenRemeshing) {
+  for (const char* surface : {"remesh", "auto"}) {
+    const Job job;
+    const auto model = job.input("pricked.stl", pricked_sphere());
+    const ProcessResult result = run(job.hollow(model, {"--surface", surface}));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(contains(result.out, "remeshed"));
+    EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{"out.stl"});
+  }
+}
+
+TEST(BadInput, SmallHoleIsNamedWhenTheSurfaceIsToBeKept) {
+  const Job job;
+  const auto model = job.input("pricked.stl", pricked_sphere());
+  expect_refused(job, run(job.hollow(model, {"--surface", "keep"})), kUnusable,
+                 {"pricked.stl", "3 boundary edges form 1 hole near", "--surface remesh"});
+}
+
+TEST(BadInput, FlatMesh) {
+  const Job job;
+  const Mesh flat = make_box({0, 0, 5}, {30, 30, 5});
+  expect_refused(job, run(job.hollow(job.input("flat.stl", flat))), kUnusable, {"flat.stl", "flat"});
+}
+
+TEST(BadInput, ZeroVolume) {
+  // A closed surface that returns along itself.
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {30, 0, 0}, {0, 30, 0}, {10, 10, 20}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 1}, {0, 1, 3}, {0, 3, 1}};
+  const Job job;
+  expect_refused(job, run(job.hollow(job.input("thin.stl", mesh))), kUnusable, {"thin.stl", "no volume"});
+}
+
+TEST(BadInput, InsideOutMeshIsTurnedWithANotice) {
+  const Job job;
+  const auto model = job.input("turned.stl", turned_inside_out(block()));
+  const ProcessResult result = run(job.hollow(model));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "aerate: note: "));
+  EXPECT_TRUE(contains(result.err, "inside out"));
+  const auto written = job.input("same.stl", block());
+  EXPECT_EQ(run(job.hollow(written)).exit_code, 0);
+}
+
+TEST(BadInput, TwistedTriangles) {
+  Mesh mesh = block();
+  std::swap(mesh.triangles[4][1], mesh.triangles[4][2]);
+  const Job job;
+  expect_refused(job, run(job.hollow(job.input("twisted.stl", mesh))), kUnusable,
+                 {"twisted.stl", "3 edges", "normals"});
+}
+
+TEST(BadInput, ModelSmallerThanTwiceTheWall) {
+  const Job job;
+  const auto model = job.input("tiny.stl", make_box({0, 0, 0}, {20, 20, 2}));
+  expect_refused(job, run(job.hollow(model)), kNothing, {"tiny.stl", "nothing to remove", "radius 1 mm"});
+}
+
+TEST(BadInput, NothingAsLargeAsAskedSaysWhatWouldFit) {
+  const Job job;
+  const auto model = job.input("thin.stl", make_box({0, 0, 0}, {20, 20, 4}));
+  // 4 mm less two walls of 1.2 mm leave spheres of 0.8 mm.
+  expect_refused(job, run(job.hollow(model, {"--min-radius", "2"})), kNothing, {"thin.stl", "radius 0.8"});
+}
+
+TEST(BadInput, OutputThatCannotBeWritten) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  const auto refused = [&](const std::string& output, int exit_code) {
+    const ProcessResult result = run({AERATE_EXECUTABLE, "hollow", model, "-o", output});
+    expect_refused(job, result, exit_code, {output});
+  };
+  refused((job.outputs() / "no" / "such" / "folder" / "out.stl").string(), kFailure);
+  refused("/proc/out.stl", kFailure);
+  refused((job.outputs() / "out.xyz").string(), kUsage);
+
+  std::filesystem::create_directory(job.folder() / "folder.stl");
+  refused((job.folder() / "folder.stl").string(), kFailure);
+  EXPECT_TRUE(std::filesystem::is_directory(job.folder() / "folder.stl"));
+  refused("/dev/null", kUsage);  // has no ending that names a format
+}
+
+TEST(BadInput, OutputThatIsTheModel) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  const std::string before = read_bytes(model);
+  std::filesystem::create_symlink(model, job.folder() / "link.stl");
+  for (const auto& output : {model, job.folder() / "link.stl"}) {
+    const ProcessResult result = run({AERATE_EXECUTABLE, "hollow", model, "-o", output});
+    expect_refused(job, result, kUsage, {"the output is the model itself"});
+    EXPECT_EQ(read_bytes(model), before);
+  }
+}
+
+TEST(BadInput, ReportThatCannotBeWrittenIsFoundBeforeTheWork) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  expect_refused(job, run(job.hollow(model, {"--json", (job.folder() / "no" / "report.json").string()})),
+                 kFailure, {"report.json"});
+  const std::string before = read_bytes(model);
+  expect_refused(job, run(job.hollow(model, {"--json", model.string()})), kUsage, {"--json"});
+  EXPECT_EQ(read_bytes(model), before);
+}
+
+// A small file system of its own, or nothing where mounting is not allowed.
+class SmallDisk {
+ public:
+  SmallDisk(const std::filesystem::path& folder, const char* options) : folder_(folder) {
+    mounted_ = mount("tmpfs", folder_.c_str(), "tmpfs", 0, options) == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount(folder_.c_str());
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool mounted() const { return mounted_; }
+
+ private:
+  std::filesystem::path folder_;
+  bool mounted_;
+};
+
+TEST(BadInput, FullDisk) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  const SmallDisk disk(job.outputs(), "size=64k");
+  if (!disk.mounted()) GTEST_SKIP() << "no permission to mount a small tmpfs";
+  expect_refused(job, run(job.hollow(model)), kFailure, {"out.stl", "No space left on device"});
+}
+
+TEST(BadInput, FullDiskKeepsWhatWasThere) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  const SmallDisk disk(job.outputs(), "size=64k");
+  if (!disk.mounted()) GTEST_SKIP() << "no permission to mount a small tmpfs";
+  std::ofstream(job.output()) << "an earlier result";
+  EXPECT_EQ(run(job.hollow(model)).exit_code, kFailure);
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{"out.stl"});
+  EXPECT_EQ(read_bytes(job.output()), "an earlier result");
+}
+
+TEST(BadInput, FullStandardOutput) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  std::string command = std::string(AERATE_EXECUTABLE) + " inspect " + model.string() + " > /dev/full";
+  const ProcessResult result = run({"sh", "-c", command});
+  EXPECT_EQ(result.exit_code, kFailure);
+  EXPECT_TRUE(contains(result.err, "standard output"));
+}
+
+TEST(BadInput, NumbersThatMakeNoSense) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& said) {
+    expect_refused(job, run(job.hollow(model, arguments)), kUsage, {arguments.front(), said});
+  };
+  refused({"--wall", "-1"}, "-1 mm");
+  refused({"--wall", "nan"}, "not a number");
+  refused({"--wall", "inf"}, "not a number");
+  refused({"--wall", "1.2mm"}, "not a number");
+  refused({"--wall", "1e300"}, "too much");
+  refused({"--gap", "-0.5"}, "-0.5 mm");
+  refused({"--max-radius", "0"}, "0 mm");
+  refused({"--min-radius", "0"}, "0 mm");
+  refused({"--min-radius", "5"}, "more than --max-radius 3.5 mm");
+  refused({"--tolerance", "0"}, "0 mm");
+  refused({"--tolerance", "0.5"}, "--min-radius 0.62 mm");
+  refused({"--scale", "0"}, "more than 0");
+  refused({"--unit", "furlong"}, "furlong");
+  refused({"--threads", "0"}, "at least 1");
+  refused({"--density", "-1"}, "-1 g/cm3");
+  refused({"--max-triangles", "3"}, "3 triangles");
+  refused({"--max-triangles", "20"}, "12 triangles of its own");
+  refused({"--surface", "paint"}, "paint");
+  refused({"--packing", "random"}, "random");
+  refused({"--no-such-option"}, "");
+}
+
+TEST(BadInput, UnknownMaterialListsTheKnownOnes) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  expect_refused(job, run(job.hollow(model, {"--material", "cheese"})), kUsage, {"cheese", "PETG"});
+}
+
+TEST(BadInput, MoreThanMemoryHoldsIsRefusedBeforeWorkStarts) {
+  const Job job;
+  const auto model = job.input("large.stl", make_box({0, 0, 0}, {200, 200, 200}));
+  const ProcessResult result =
+      run(job.hollow(model, {"--max-radius", "0.01", "--min-radius", "0.001", "--gap", "0", "--tolerance",
+                             "0.0001"}));
+  expect_refused(job, result, kUsage, {"would need about", "are available", "--max-radius"});
+}
+
+TEST(BadInput, ScaleBeyondTheRangeOfTheCoordinates) {
+  const Job job;
+  const auto model = job.input("block.stl", make_box({0, 0, 0}, {3e37F, 3e37F, 3e37F}));
+  const ProcessResult result = run(job.hollow(model, {"--scale", "1e9"}));
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_TRUE(contains(result.err, "block.stl"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace aerate::test
