@@ -80,8 +80,9 @@ std::string to_text(const HollowReport& report) {
   Lines lines;
   add_input(lines, report.input);
   lines.add("voids", "{}, radius {}; {} packing, {:.2f} % of the model",
-            count_of(output.void_count, "sphere", "spheres"), radii(output.smallest_radius, output.largest_radius),
-            name_of(report.method), 100 * report.packing_density);
+            count_of(output.void_count, "sphere", "spheres"),
+            radii(output.smallest_radius, output.largest_radius), name_of(report.method),
+            100 * report.packing_density);
   lines.add("removed", "{:.1f} of {:.1f} mm3 ({:.2f} %), {:.1f} mm3 left{}", output.volume_removed,
             output.volume_before, 100 * output.volume_removed / output.volume_before, output.volume_after,
             report.volume_estimated ? "; the model's volume is an estimate, since parts overlap" : "");

@@ -51,10 +51,11 @@ double tolerance_for(const VoidPlan& plan, double asked, std::size_t outer_trian
   const std::size_t for_voids = *max_triangles > outer_triangles ? *max_triangles - outer_triangles : 0;
   const auto loosened = loosen_tolerance(plan, CarveOptions{.tolerance = asked}, for_voids);
   if (!loosened) {
-    throw UsageError(fmt::format("--max-triangles {}: the model has {} triangles of its own, and {} voids take "
-                                 "more than the {} that are left, however coarse they are",
-                                 *max_triangles, outer_triangles, plan.spheres.size(), for_voids),
-                     "allow more triangles, or give a larger --min-radius for fewer voids");
+    throw UsageError(
+        fmt::format("--max-triangles {}: the model has {} triangles of its own, and {} voids take "
+                    "more than the {} that are left, however coarse they are",
+                    *max_triangles, outer_triangles, plan.spheres.size(), for_voids),
+        "allow more triangles, or give a larger --min-radius for fewer voids");
   }
   return *loosened;
 }

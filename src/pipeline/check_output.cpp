@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -176,7 +177,10 @@ Clearances measure_limits(const Mesh& outer, const std::vector<Sphere>& balls,
   if (expected.surface == OuterSurface::remeshed) {
     const PackingLimits written{
         .wall = 0, .gap = 0, .min_radius = 0, .max_radius = limits.max_radius + limits.gap};
-    const Packing verified = verify_packing(outer, {balls, written, {}});
+    Packing measured;
+    measured.spheres = balls;
+    measured.limits = written;
+    const Packing verified = verify_packing(outer, std::move(measured));
     if (verified.spheres.size() != balls.size() || verified.statistics.shrunk_by_verification > 0)
       fail("{} voids lie where the model is not solid once",
            verified.statistics.dropped_by_verification + verified.statistics.shrunk_by_verification);

@@ -77,12 +77,12 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   const Mesh written = read_back(pending.file().path(), format);
   log.check_interrupted();
   report.output = check_output(written, {.solid = solid,
-                                              .model = model.mesh,
-                                              .inspection = model.inspection,
-                                              .plan = plan,
-                                              .limits = options.limits,
-                                              .tolerance = report.tolerance_used,
-                                              .surface = report.surface});
+                                         .model = model.mesh,
+                                         .inspection = model.inspection,
+                                         .plan = plan,
+                                         .limits = options.limits,
+                                         .tolerance = report.tolerance_used,
+                                         .surface = report.surface});
   report.output.path = options.output;
   report.output.file_bytes = std::filesystem::file_size(pending.file().path());
   log.check_interrupted();

@@ -40,8 +40,8 @@ Mesh read_written_obj(const std::filesystem::path& path) {
     } else if (line.starts_with('f') && scan_three(std::string_view(line).substr(1), indices)) {
       for (const std::uint32_t index : indices) {
         if (index == 0 || index > positions.size())
-          throw FailureError(fmt::format("{}: line {} names a vertex that is not there", path.string(),
-                                         line_number));
+          throw FailureError(
+              fmt::format("{}: line {} names a vertex that is not there", path.string(), line_number));
         corners.push_back(positions[index - 1]);
       }
     } else if (!line.empty() && !line.starts_with('#')) {

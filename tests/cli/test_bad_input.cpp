@@ -312,9 +312,8 @@ TEST(BadInput, UnknownMaterialListsTheKnownOnes) {
 TEST(BadInput, MoreThanMemoryHoldsIsRefusedBeforeWorkStarts) {
   const Job job;
   const auto model = job.input("large.stl", make_box({0, 0, 0}, {200, 200, 200}));
-  const ProcessResult result =
-      run(job.hollow(model, {"--max-radius", "0.01", "--min-radius", "0.001", "--gap", "0", "--tolerance",
-                             "0.0001"}));
+  const ProcessResult result = run(job.hollow(
+      model, {"--max-radius", "0.01", "--min-radius", "0.001", "--gap", "0", "--tolerance", "0.0001"}));
   expect_refused(job, result, kUsage, {"would need about", "are available", "--max-radius"});
 }
 

@@ -44,8 +44,7 @@ TEST(Command, HollowsEachSampleIntoEachFormat) {
   for (const char* model : {"bunny.stl", "bracket.stl", "pawn.obj"}) {
     for (const char* name : {"out.stl", "out.obj", "out.ply", "OUT.STL"}) {
       const Job job;
-      const ProcessResult result =
-          run({AERATE_EXECUTABLE, "hollow", sample(model), "-o", job.output(name)});
+      const ProcessResult result = run({AERATE_EXECUTABLE, "hollow", sample(model), "-o", job.output(name)});
       EXPECT_EQ(result.exit_code, 0) << model << ": " << result.err;
       EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{name});
       EXPECT_TRUE(contains(result.out, "removed"));
@@ -81,7 +80,8 @@ TEST(Command, SameBytesForAnyNumberOfThreadsWhenRemeshing) {
   std::vector<std::string> results;
   for (const char* threads : {"1", "2", "8"}) {
     const Job job;
-    ASSERT_EQ(run(job.hollow(sample("pawn.obj"), {"--threads", threads, "--surface", "remesh"})).exit_code, 0);
+    ASSERT_EQ(run(job.hollow(sample("pawn.obj"), {"--threads", threads, "--surface", "remesh"})).exit_code,
+              0);
     results.push_back(read_bytes(job.output()));
   }
   EXPECT_EQ(results[0], results[1]);
@@ -109,16 +109,45 @@ TEST(Command, JsonHasTheFieldsOfTheSchema) {
   const Json json = Json::parse(result.out);
   EXPECT_EQ(json["schema"], "aerate.hollow");
   EXPECT_EQ(json["schema_version"], 1);
-  for (const char* pointer :
-       {"/program", "/input/path", "/input/format", "/input/triangles", "/input/closed", "/limits/wall_mm",
-        "/limits/gap_mm", "/limits/min_radius_mm", "/limits/max_radius_mm", "/limits/tolerance_mm",
-        "/packing/method", "/packing/density", "/packing/candidates", "/surface/mode", "/output/path",
-        "/output/bytes", "/output/triangles", "/output/outer_triangles", "/output/void_triangles",
-        "/voids/count", "/voids/min_radius_mm", "/voids/max_radius_mm", "/measured/wall_mm",
-        "/measured/gap_mm", "/volume/before_mm3", "/volume/after_mm3", "/volume/removed_mm3",
-        "/volume/removed_percent", "/centre_of_mass/before_mm", "/centre_of_mass/after_mm",
-        "/material/name", "/material/mass_before_g", "/material/mass_after_g", "/material/cost_before",
-        "/material/cost_after", "/stages", "/seconds", "/peak_memory_bytes", "/notices"}) {
+  for (const char* pointer : {"/program",
+                              "/input/path",
+                              "/input/format",
+                              "/input/triangles",
+                              "/input/closed",
+                              "/limits/wall_mm",
+                              "/limits/gap_mm",
+                              "/limits/min_radius_mm",
+                              "/limits/max_radius_mm",
+                              "/limits/tolerance_mm",
+                              "/packing/method",
+                              "/packing/density",
+                              "/packing/candidates",
+                              "/surface/mode",
+                              "/output/path",
+                              "/output/bytes",
+                              "/output/triangles",
+                              "/output/outer_triangles",
+                              "/output/void_triangles",
+                              "/voids/count",
+                              "/voids/min_radius_mm",
+                              "/voids/max_radius_mm",
+                              "/measured/wall_mm",
+                              "/measured/gap_mm",
+                              "/volume/before_mm3",
+                              "/volume/after_mm3",
+                              "/volume/removed_mm3",
+                              "/volume/removed_percent",
+                              "/centre_of_mass/before_mm",
+                              "/centre_of_mass/after_mm",
+                              "/material/name",
+                              "/material/mass_before_g",
+                              "/material/mass_after_g",
+                              "/material/cost_before",
+                              "/material/cost_after",
+                              "/stages",
+                              "/seconds",
+                              "/peak_memory_bytes",
+                              "/notices"}) {
     EXPECT_TRUE(json.contains(Json::json_pointer(pointer))) << pointer;
   }
   EXPECT_EQ(json["material"]["name"], "PETG");
@@ -128,9 +157,10 @@ TEST(Command, JsonHasTheFieldsOfTheSchema) {
   EXPECT_NEAR(json["volume"]["before_mm3"].get<double>() - json["volume"]["removed_mm3"].get<double>(),
               json["volume"]["after_mm3"].get<double>(), 1e-3);
   // Grams are the volume times the density.
-  EXPECT_NEAR(json["material"]["mass_after_g"].get<double>(),
-              json["volume"]["after_mm3"].get<double>() * json["material"]["density_g_cm3"].get<double>() / 1000,
-              1e-6);
+  EXPECT_NEAR(
+      json["material"]["mass_after_g"].get<double>(),
+      json["volume"]["after_mm3"].get<double>() * json["material"]["density_g_cm3"].get<double>() / 1000,
+      1e-6);
 }
 
 TEST(Command, MassAndCostFollowDensityAndPrice) {
@@ -151,13 +181,15 @@ TEST(Command, UnitAndScaleApply) {
   const ProcessResult result =
       run({AERATE_EXECUTABLE, "inspect", model, "--unit", "inch", "--scale", "2", "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NEAR(Json::parse(result.out)["input"]["signed_volume_mm3"].get<double>(), 8 * 25.4 * 25.4 * 25.4, 0.1);
+  EXPECT_NEAR(Json::parse(result.out)["input"]["signed_volume_mm3"].get<double>(), 8 * 25.4 * 25.4 * 25.4,
+              0.1);
 }
 
 TEST(Command, SeveralPartsAreAllUsedAndSaidSo) {
   const Job job;
-  const std::string two = "o a\nv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-                          "o b\nv 20 0 0\nv 29 0 0\nv 20 9 0\nv 20 0 9\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+  const std::string two =
+      "o a\nv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+      "o b\nv 20 0 0\nv 29 0 0\nv 20 9 0\nv 20 0 9\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
   const ProcessResult result = run({AERATE_EXECUTABLE, "inspect", job.input("two.obj", two)});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_TRUE(contains(result.err, "2 parts"));
@@ -207,8 +239,7 @@ TEST(Command, NoBarAndNoColourUnlessOnATerminal) {
 TEST(Command, TerminalShowsABarAndObeysNoColor) {
   const Job job;
   const auto model = job.input("turned.stl", turned_inside_out(block()));
-  const ProcessResult coloured =
-      run_on_terminal(job.hollow(model), {{"TERM", "xterm"}, {"NO_COLOR", ""}});
+  const ProcessResult coloured = run_on_terminal(job.hollow(model), {{"TERM", "xterm"}, {"NO_COLOR", ""}});
   EXPECT_EQ(coloured.exit_code, 0);
   EXPECT_TRUE(contains(coloured.err, "[33m"));
   EXPECT_TRUE(contains(coloured.err, "\r"));
@@ -237,7 +268,8 @@ TEST(Command, PackWritesATable) {
   const std::string csv = read_bytes(table);
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "x,y,z,radius,kind");
   EXPECT_TRUE(contains(csv, ",lattice\n"));
-  EXPECT_EQ(run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", job.output("spheres.txt")}).exit_code, 2);
+  EXPECT_EQ(
+      run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", job.output("spheres.txt")}).exit_code, 2);
 }
 
 TEST(Command, InspectTellsWhatIsWrong) {

@@ -60,9 +60,9 @@ inline Mesh make_torus(double ring_radius, double tube_radius, std::uint32_t rin
 inline Mesh make_uv_sphere(double radius, std::uint32_t rings, std::uint32_t sides) {
   Mesh mesh;
   const auto add = [&](double polar, double azimuth) {
-    mesh.positions.push_back(to_float({radius * std::sin(polar) * std::cos(azimuth),
-                                       radius * std::sin(polar) * std::sin(azimuth),
-                                       radius * std::cos(polar)}));
+    mesh.positions.push_back(
+        to_float({radius * std::sin(polar) * std::cos(azimuth), radius * std::sin(polar) * std::sin(azimuth),
+                  radius * std::cos(polar)}));
   };
   add(0, 0);
   for (std::uint32_t i = 1; i < rings; ++i) {
@@ -71,7 +71,9 @@ inline Mesh make_uv_sphere(double radius, std::uint32_t rings, std::uint32_t sid
   }
   add(std::numbers::pi, 0);
   const auto bottom = static_cast<std::uint32_t>(mesh.positions.size() - 1);
-  const auto at = [&](std::uint32_t ring, std::uint32_t side) { return 1 + (ring - 1) * sides + side % sides; };
+  const auto at = [&](std::uint32_t ring, std::uint32_t side) {
+    return 1 + (ring - 1) * sides + side % sides;
+  };
   for (std::uint32_t j = 0; j < sides; ++j) {
     mesh.triangles.push_back({0, at(1, j), at(1, j + 1)});
     for (std::uint32_t i = 1; i + 1 < rings; ++i) {

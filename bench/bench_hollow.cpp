@@ -1,0 +1,150 @@
+#include <chrono>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fmt/format.h>
+#include <random>
+#include <string>
+
+#include "core/monitor.h"
+#include "core/void_plan.h"
+#include "kernels/hexagonal.h"
+#include "kernels/point_triangle.h"
+#include "kernels/winding.h"
+#include "mesh/inspect.h"
+#include "mesh/load.h"
+#include "packing/hexagonal.h"
+#include "packing/verify.h"
+#include "pipeline/hollow.h"
+#include "printing/remesh.h"
+#include "printing/write.h"
+
+// The whole job on a large model, stage by stage, and in the same run what it is measured against: the
+// pipeline one would write with OpenVDB alone, and packing without an index.
+//   bench_hollow [MODEL [LONGEST_SIDE_MM [VOXEL_MM]]]
+
+namespace aerate::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double longest_side(const Mesh& mesh) {
+  const Box3f box = bounding_box(mesh);
+  const Vec3f extent = box.upper - box.lower;
+  return static_cast<double>(max_of(extent.x, max_of(extent.y, extent.z)));
+}
+
+// The whole model as a level set, one CSG difference, one mesh of the whole.
+double naive_pipeline(const std::filesystem::path& model, double scale, const PackingLimits& limits,
+                      double voxel, const std::filesystem::path& output) {
+  Monitor monitor;
+  const auto start = Clock::now();
+  auto last = start;
+  const auto lap = [&](const char* stage) {
+    fmt::print("| naive: {} | {:.2f} | |\n", stage, seconds_since(last));
+    last = Clock::now();
+  };
+  const Mesh mesh = load_model(model, {.unit = std::nullopt, .scale = scale}).mesh;
+  lap("load");
+  const ModelLevelSet level_set(mesh, voxel, 16e9, monitor);
+  lap("meshToVolume");
+  const VoidPlan plan{pack_hexagonal(mesh, limits, monitor).spheres};
+  lap("pack");
+  const Solid solid = level_set.subtract(plan, {.tolerance = 0.05}, monitor);
+  lap("csgDifference and volumeToMesh");
+  write_mesh(solid.mesh, output, MeshFormat::stl);
+  lap("write");
+  const double seconds = seconds_since(start);
+  fmt::print("| naive: all, {} triangles, voxels of {} mm, not checked | {:.2f} | |\n",
+             solid.mesh.triangles.size(), voxel, seconds);
+  return seconds;
+}
+
+// One thread, extrapolated from a sample of the lattice's places.
+double brute_force_packing(const Mesh& mesh, const PackingLimits& limits, std::size_t candidates) {
+  const Box3f box = bounding_box(mesh);
+  const kernels::HexagonalLattice lattice = kernels::make_hexagonal_lattice(
+      {to_double(box.lower), to_double(box.upper)}, limits.max_radius + limits.gap / 2);
+  std::mt19937_64 random(1);
+  std::uniform_int_distribution<std::size_t> slot(0, lattice.cell_count() * kernels::kLatticePerCell - 1);
+  constexpr std::size_t kSample = 100;
+  const double reach = limits.max_radius + limits.wall;
+  std::size_t fitting = 0;
+  const auto start = Clock::now();
+  for (std::size_t i = 0; i < kSample; ++i) {
+    const Vec3d centre = lattice.lattice_position(static_cast<std::uint32_t>(slot(random)));
+    int winding = 0;
+    bool is_near = false;
+    for (const Triangle& t : mesh.triangles) {
+      const kernels::Facet facet{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+      winding += kernels::winding_detail::facet_crossing(facet, centre);
+      is_near = is_near || kernels::distance_squared_to_facet(centre, facet) < reach * reach;
+    }
+    if (winding == 1 && !is_near) ++fitting;
+  }
+  const double seconds = seconds_since(start) / kSample * static_cast<double>(candidates);
+  fmt::print("| packing by brute force, one thread, from {} of {} places ({} fit) | {:.0f}* | |\n", kSample,
+             candidates, fitting, seconds);
+  return seconds;
+}
+
+int run(const std::filesystem::path& model, double side, double voxel) {
+  if (!std::filesystem::exists(model)) {
+    fmt::print("skipped: {} is not there\n", model.string());
+    return EXIT_SUCCESS;
+  }
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("aerate-bench-{}", std::random_device{}());
+  std::filesystem::create_directory(folder);
+
+  const double scale = side / longest_side(load_model(model).mesh);
+  HollowOptions options;
+  options.model = model;
+  options.output = folder / "hollow.stl";
+  options.load.scale = scale;
+  options.limits = {.wall = 0.8, .gap = 0.4, .min_radius = 0.62, .max_radius = 1.0};
+  options.surface = SurfaceMode::keep;
+  Monitor monitor;
+  const HollowReport report = hollow(options, monitor);
+
+  fmt::print("{}: {} triangles, longest side {} mm, R = 1, wall 0.8, gap 0.4, tolerance 0.05 mm\n\n",
+             model.filename().string(), report.input.inspection.triangle_count, side);
+  fmt::print("| stage | seconds | peak MB |\n|---|---|---|\n");
+  for (const StageCost& stage : report.stages) {
+    fmt::print("| {} | {:.2f} | {:.0f} |\n", stage.name, stage.seconds, stage.peak_bytes / 1e6);
+  }
+  const StageCost total = total_of(report.stages);
+  fmt::print("| all: {} voids, {} triangles, checked | {:.2f} | {:.0f} |\n", report.output.void_count,
+             report.output.triangle_count, total.seconds, total.peak_bytes / 1e6);
+
+  const double naive = naive_pipeline(model, scale, options.limits, voxel, folder / "naive.stl");
+  const Mesh mesh = load_model(model, options.load).mesh;
+  const auto start = Clock::now();
+  const Packing packing = pack_hexagonal(mesh, options.limits, monitor);
+  const double indexed = seconds_since(start);
+  const double brute_force = brute_force_packing(
+      mesh, options.limits,
+      packing.statistics.outside + packing.statistics.near_surface + packing.spheres.size());
+  fmt::print("| packing with the index | {:.3f} | |\n\n", indexed);
+  fmt::print("naive / whole job: {:.1f}; brute force / index: {:.0f}\n", naive / total.seconds,
+             brute_force / indexed);
+  std::filesystem::remove_all(folder);
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+}  // namespace aerate::bench
+
+int main(int argc, char** argv) {
+  try {
+    return aerate::bench::run(argc > 1 ? argv[1] : "../shared/models/dragon-871k.stl",
+                              argc > 2 ? std::atof(argv[2]) : 100.0, argc > 3 ? std::atof(argv[3]) : 0.2);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_hollow: {}\n", error.what());
+    return EXIT_FAILURE;
+  }
+}
