@@ -18,7 +18,7 @@ struct HollowCommand::Options {
   explicit Options(CLI::App& app)
       : command(*app.add_subcommand("hollow", "Remove packed spheres from a model and write the result")),
         model(command),
-        limits(command),
+        packing(command),
         run(command) {
     command.add_option("-o,--output", output, "The result: .stl, .obj or .ply (required)")
         ->required()
@@ -68,8 +68,7 @@ struct HollowCommand::Options {
     options.model = model.path;
     options.output = output;
     options.load = model.load();
-    options.limits = limits.limits();
-    options.method = limits.method();
+    options.packing = packing.request();
     options.surface =
         std::map<std::string, SurfaceMode>{
             {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}
@@ -79,9 +78,9 @@ struct HollowCommand::Options {
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
     options.material = choose_material(material, density, price);
-    if (tolerance > options.limits.min_radius / 2) {
+    if (tolerance > options.packing.limits.min_radius / 2) {
       throw UsageError(fmt::format("--tolerance {} mm is more than half of --min-radius {} mm", tolerance,
-                                   options.limits.min_radius),
+                                   options.packing.limits.min_radius),
                        "give a smaller --tolerance or a larger --min-radius");
     }
     return options;
@@ -89,7 +88,7 @@ struct HollowCommand::Options {
 
   CLI::App& command;
   ModelOptions model;
-  LimitOptions limits;
+  PackingCommandOptions packing;
   RunOptions run;
   std::string output;
   double tolerance = HollowOptions{}.tolerance;

@@ -56,7 +56,7 @@ LoadOptions ModelOptions::load() const {
   return options;
 }
 
-LimitOptions::LimitOptions(CLI::App& command) {
+PackingCommandOptions::PackingCommandOptions(CLI::App& command) {
   const auto add_length = [&](const char* name, double& value, const char* what,
                               std::optional<double> least) {
     command.add_option(name, value, what)
@@ -68,19 +68,42 @@ LimitOptions::LimitOptions(CLI::App& command) {
   add_length("--gap", limits_.gap, "Least thickness between two voids", 0.0);
   add_length("--min-radius", limits_.min_radius, "Smaller voids are not made", {});
   add_length("--max-radius", limits_.max_radius, "Radius of the largest voids", {});
-  command.add_option("--packing", packing_, "How spheres are packed: hexagonal")
-      ->check(CLI::IsMember({"hexagonal"}))
+  command
+      .add_option(
+          "--packing", packing_,
+          "How spheres are packed: adaptive (the largest that fits first, densest) or hexagonal (a lattice)")
+      ->check(CLI::IsMember({"adaptive", "hexagonal"}))
       ->type_name("METHOD")
       ->capture_default_str();
+  command
+      .add_option("--max-voids", max_voids_, "Adaptive packing: no more voids than this, the largest ones")
+      ->check(number_between(1.0, 4e9, "voids"))
+      ->type_name("N");
+  command
+      .add_option("--target-density", target_density_,
+                  "Adaptive packing: stop when voids fill this share of the model's volume, percent")
+      ->check(number_between({}, 100, "%"))
+      ->type_name("PERCENT");
 }
 
-PackingLimits LimitOptions::limits() const {
+PackingRequest PackingCommandOptions::request() const {
   if (limits_.min_radius > limits_.max_radius) {
     throw UsageError(fmt::format("--min-radius {} mm is more than --max-radius {} mm", limits_.min_radius,
                                  limits_.max_radius),
                      "give a smaller --min-radius or a larger --max-radius");
   }
-  return limits_;
+  PackingRequest request;
+  request.limits = limits_;
+  if (packing_ == "hexagonal") {
+    request.method = PackingMethod::hexagonal;
+    if (max_voids_ || target_density_) {
+      throw UsageError("--max-voids and --target-density are for adaptive packing",
+                       "leave out --packing hexagonal");
+    }
+  }
+  if (max_voids_) request.stop.max_count = static_cast<std::size_t>(*max_voids_);
+  if (target_density_) request.stop.target_density = *target_density_ / 100;
+  return request;
 }
 
 RunOptions::RunOptions(CLI::App& command) {

@@ -26,16 +26,17 @@ struct ModelOptions {
   double scale_ = 1.0;
 };
 
-// --wall, --gap, --min-radius, --max-radius, --packing
-struct LimitOptions {
-  explicit LimitOptions(CLI::App& command);
-  // Throws UsageError for limits that contradict each other.
-  PackingLimits limits() const;
-  PackingMethod method() const { return PackingMethod::hexagonal; }
+// --wall, --gap, --min-radius, --max-radius, --packing, --max-voids, --target-density
+struct PackingCommandOptions {
+  explicit PackingCommandOptions(CLI::App& command);
+  // Throws UsageError for options that contradict each other.
+  PackingRequest request() const;
 
  private:
   PackingLimits limits_ = kDefaultLimits;
-  std::string packing_ = "hexagonal";
+  std::string packing_ = "adaptive";
+  std::optional<double> max_voids_;
+  std::optional<double> target_density_;  // percent
 };
 
 // --threads, --quiet, --json

@@ -13,7 +13,7 @@ struct PackCommand::Options {
   explicit Options(CLI::App& app)
       : command(*app.add_subcommand("pack", "Pack spheres in a closed model and write them as a table")),
         model(command),
-        limits(command),
+        packing(command),
         run(command) {
     command.add_option("-o,--output", output, "The spheres: .csv, a line x,y,z,radius,kind each (required)")
         ->required()
@@ -22,7 +22,7 @@ struct PackCommand::Options {
 
   CLI::App& command;
   ModelOptions model;
-  LimitOptions limits;
+  PackingCommandOptions packing;
   RunOptions run;
   std::string output;
 };
@@ -39,8 +39,7 @@ void PackCommand::run(InterruptGuard& interrupt) const {
   options.model = options_->model.path;
   options.output = options_->output;
   options.load = options_->model.load();
-  options.limits = options_->limits.limits();
-  options.method = options_->limits.method();
+  options.packing = options_->packing.request();
   run_reported(options_->run, {options.model, options.output}, interrupt,
                [&](Monitor& monitor) { return pack(options, monitor); });
 }

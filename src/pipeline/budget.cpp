@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "pipeline/memory.h"
 #include "printing/carve.h"
@@ -26,14 +27,22 @@ void require(double needed, const std::string& what, const std::string& hint) {
 
 }  // namespace
 
-void require_memory_for_packing(const Mesh& mesh, const PackingLimits& limits, PackingMethod method) {
+void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request) {
   double needed = 0;
-  switch (method) {
+  switch (request.method) {
+    case PackingMethod::adaptive:
+      needed = estimate_adaptive_bytes(mesh, request.limits, request.stop);
+      require(
+          needed,
+          fmt::format("packing spheres down to radius {:.3g} mm into this model", request.limits.min_radius),
+          "give a larger --min-radius: the number of spheres grows with the inverse of its cube");
+      return;
     case PackingMethod::hexagonal:
-      needed = estimate_hexagonal_bytes(mesh, limits);
+      needed = estimate_hexagonal_bytes(mesh, request.limits);
       break;
   }
-  require(needed, fmt::format("packing spheres of radius {:.3g} mm into this model", limits.max_radius),
+  require(needed,
+          fmt::format("packing spheres of radius {:.3g} mm into this model", request.limits.max_radius),
           "give a larger --max-radius: the number of spheres falls with its cube");
 }
 

@@ -13,7 +13,7 @@ namespace aerate {
 
 // Refuses a job that memory cannot hold before it starts: throws UsageError with the estimate, what there is
 // and what to change.
-void require_memory_for_packing(const Mesh& mesh, const PackingLimits& limits, PackingMethod method);
+void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request);
 
 // The same for what is made of the packing: the void surfaces, the file and its check. `outer_triangles` is
 // the size of the model's own surface.

@@ -34,8 +34,8 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
 
   JobLog log(monitor);
   HollowReport report;
-  report.limits = options.limits;
-  report.method = options.method;
+  report.limits = options.packing.limits;
+  report.method = options.packing.method;
   report.tolerance_asked = options.tolerance;
   report.max_triangles = options.max_triangles;
   report.material = options.material;
@@ -43,17 +43,18 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);
-  model = make_usable(std::move(model),
-                      {options.surface, options.max_hole,
-                       options.voxel_size.value_or(default_voxel_size(options.limits, model.inspection.box))},
-                      log);
+  model = make_usable(
+      std::move(model),
+      {options.surface, options.max_hole,
+       options.voxel_size.value_or(default_voxel_size(options.packing.limits, model.inspection.box))},
+      log);
   report.input = model.input;
   report.surface = model.level_set ? OuterSurface::remeshed : OuterSurface::kept;
   if (model.level_set) report.voxel_size = model.level_set->voxel_size();
   report.outer_deviation = model.outer_deviation;
   report.volume_estimated = model.inspection.overlapped_volume > 0;
 
-  const Packing packing = pack_model(model, options.limits, options.method, log);
+  const Packing packing = pack_model(model, options.packing, log);
   report.packing_statistics = packing.statistics;
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
@@ -80,7 +81,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
                                          .model = model.mesh,
                                          .inspection = model.inspection,
                                          .plan = plan,
-                                         .limits = options.limits,
+                                         .limits = options.packing.limits,
                                          .tolerance = report.tolerance_used,
                                          .surface = report.surface});
   report.output.path = options.output;

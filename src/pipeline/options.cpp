@@ -4,6 +4,8 @@ namespace aerate {
 
 const char* name_of(PackingMethod method) {
   switch (method) {
+    case PackingMethod::adaptive:
+      return "adaptive";
     case PackingMethod::hexagonal:
       return "hexagonal";
   }

@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "core/device.h"
 #include "core/packing.h"
 #include "mesh/load.h"
+#include "packing/adaptive.h"
 
 namespace aerate {
 
@@ -17,7 +19,7 @@ enum class SurfaceMode {
   remesh,     // the model becomes a level set and is meshed anew
 };
 
-enum class PackingMethod { hexagonal };
+enum class PackingMethod { adaptive, hexagonal };
 
 // As on the command line.
 const char* name_of(PackingMethod method);
@@ -35,20 +37,26 @@ struct MaterialFigures {
   double price_per_kg = 0;  // in the user's own currency
 };
 
+// How a model is to be packed.
+struct PackingRequest {
+  PackingMethod method = PackingMethod::adaptive;
+  PackingLimits limits = kDefaultLimits;
+  AdaptiveOptions stop;  // when the adaptive method stops; the hexagonal one has no such choice
+  DeviceRequest device;
+};
+
 struct PackOptions {
   std::filesystem::path model;
   std::filesystem::path output;  // .csv
   LoadOptions load;
-  PackingLimits limits = kDefaultLimits;
-  PackingMethod method = PackingMethod::hexagonal;
+  PackingRequest packing;
 };
 
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
   LoadOptions load;
-  PackingLimits limits = kDefaultLimits;
-  PackingMethod method = PackingMethod::hexagonal;
+  PackingRequest packing;
   SurfaceMode surface = SurfaceMode::automatic;
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "packing/verify.h"
 #include "pipeline/announced_file.h"
@@ -15,11 +16,12 @@
 namespace aerate {
 namespace {
 
-Packing pack_unverified(const Mesh& mesh, const PackingLimits& limits, PackingMethod method,
-                        Monitor& monitor) {
-  switch (method) {
+Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor& monitor) {
+  switch (request.method) {
+    case PackingMethod::adaptive:
+      return pack_adaptive(mesh, request.limits, request.stop, monitor, request.device);
     case PackingMethod::hexagonal:
-      return pack_hexagonal(mesh, limits, monitor);
+      return pack_hexagonal(mesh, request.limits, monitor, request.device);
   }
   throw FailureError("unknown packing method");
 }
@@ -54,17 +56,16 @@ Packing pack_unverified(const Mesh& mesh, const PackingLimits& limits, PackingMe
 
 }  // namespace
 
-Packing pack_model(const PreparedModel& model, const PackingLimits& limits, PackingMethod method,
-                   Monitor& monitor) {
-  require_memory_for_packing(model.mesh, limits, method);
+Packing pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
+  require_memory_for_packing(model.mesh, request);
   monitor.stage("pack");
-  Packing packing = pack_unverified(model.mesh, limits, method, monitor);
+  Packing packing = pack_unverified(model.mesh, request, monitor);
   monitor.check_interrupted();
 
   monitor.stage("verify");
   packing = verify_packing(model.mesh, std::move(packing));
   monitor.check_interrupted();
-  if (packing.spheres.empty()) refuse_empty(model, limits);
+  if (packing.spheres.empty()) refuse_empty(model, request.limits);
 
   if (model.inspection.overlapped_volume > 0 && packing.statistics.overlapped_region > 0)
     monitor.notice(
@@ -83,13 +84,13 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
 
   JobLog log(monitor);
   PackReport report;
-  report.method = options.method;
+  report.method = options.packing.method;
   report.output = options.output;
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   AnnouncedFile table(options.output, log);
   model = make_usable(std::move(model), {.mode = SurfaceMode::keep}, log);
   report.input = model.input;
-  report.packing = pack_model(model, options.limits, options.method, log);
+  report.packing = pack_model(model, options.packing, log);
   report.density = total_volume(report.packing) / model.inspection.filled_volume;
 
   log.stage("measure");

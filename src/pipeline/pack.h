@@ -10,8 +10,7 @@ namespace aerate {
 
 // Packs a prepared model and verifies the packing. Throws UsageError if memory would not suffice, and
 // NothingToRemoveError, naming the largest sphere that would fit, if there is no sphere under these limits.
-Packing pack_model(const PreparedModel& model, const PackingLimits& limits, PackingMethod method,
-                   Monitor& monitor);
+Packing pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor);
 
 // The packing alone, of a model that must be closed.
 PackReport pack(const PackOptions& options, Monitor& monitor);

@@ -63,7 +63,7 @@ struct OutputFacts {
 struct HollowReport {
   InputFacts input;
   PackingLimits limits;
-  PackingMethod method = PackingMethod::hexagonal;
+  PackingMethod method = PackingMethod::adaptive;
   PackingStatistics packing_statistics;
   double packing_density = 0;  // volume of the planned balls over that of the packed model
 
@@ -100,7 +100,7 @@ StageCost total_of(const std::vector<StageCost>& stages);
 struct PackReport {
   InputFacts input;
   std::filesystem::path output;
-  PackingMethod method = PackingMethod::hexagonal;
+  PackingMethod method = PackingMethod::adaptive;
   Packing packing;
   double density = 0;
   std::optional<Clearances> clearances;  // measured, fp64
