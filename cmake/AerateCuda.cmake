@@ -73,7 +73,9 @@ if(AERATE_WITH_CUDA)
   endif()
   message(STATUS "CUDA: nvcc ${CMAKE_CUDA_COMPILER_VERSION} for ${CMAKE_CUDA_ARCHITECTURES}")
   if(AERATE_CCACHE AND NOT CMAKE_CUDA_COMPILER_LAUNCHER)
-    set(CMAKE_CUDA_COMPILER_LAUNCHER "${AERATE_CCACHE}")
+    # By the contents of files, not by preprocessed text: nvcc preprocesses twice, for the host and for devices,
+    # and ccache would look at one of them only.
+    set(CMAKE_CUDA_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_DEPEND=1 CCACHE_NAMESPACE=nvcc "${AERATE_CCACHE}")
   endif()
 
   # The standard is given as an option because CMake 3.25 does not know that nvcc has C++20. As for C++, a*b+c

@@ -32,6 +32,7 @@ class FourConstraints {
     centre_[1] = p - Vec3d{s, -s, -s};
     centre_[2] = p - Vec3d{-s, s, -s};
     centre_[3] = p - Vec3d{-s, -s, s};
+    AERATE_UNROLL
     for (int k = 0; k < 4; ++k) {
       radius_[k] = radius - value;
       artificial_[k] = true;
@@ -42,6 +43,7 @@ class FourConstraints {
   // Normals, values and weights at p; false if the four normals lie in a plane.
   AERATE_HD bool linearise(Vec3d p) {
     Vec3d normal[4];
+    AERATE_UNROLL
     for (int k = 0; k < 4; ++k) {
       const Vec3d away = p - centre_[k];
       const double distance = length(away);
@@ -82,6 +84,7 @@ class FourConstraints {
   AERATE_HD double least_weight() const {
     double least = 1;
     double last = 1;
+    AERATE_UNROLL
     for (int k = 0; k < 3; ++k) {
       const double w = -dot(cofactor_[k], last_normal_);
       least = min_of(least, w);
@@ -97,6 +100,7 @@ class FourConstraints {
     double weight[4], share[4];
     weight[3] = 1;
     share[3] = 1;
+    AERATE_UNROLL
     for (int k = 0; k < 3; ++k) {
       weight[k] = -dot(cofactor_[k], last_normal_);
       share[k] = dot(cofactor_[k], normal - last_normal_);
@@ -105,6 +109,7 @@ class FourConstraints {
     }
     int leaving = -1;
     double least_ratio = 0;
+    AERATE_UNROLL
     for (int k = 0; k < 4; ++k) {
       if (share[k] <= 1e-9) continue;
       const double ratio = max_of(weight[k], 0.0) / share[k];
@@ -113,6 +118,7 @@ class FourConstraints {
         least_ratio = ratio;
       }
     }
+    AERATE_UNROLL
     for (int k = 0; k < 4; ++k) {
       if (k == leaving) {
         centre_[k] = constraint.centre;

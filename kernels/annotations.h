@@ -1,8 +1,15 @@
 #pragma once
 
-// Marks functions that are compiled for the host by g++ and for host and device by nvcc.
+// AERATE_HD marks functions that are compiled for the host by g++ and for host and device by nvcc.
+// AERATE_UNROLL, before a loop with a constant number of turns over a small array: nvcc must unroll it to
+// keep the array in registers (scripts/check-ptxas sees to it that it did).
 #if defined(__CUDACC__)
 #define AERATE_HD __host__ __device__
 #else
 #define AERATE_HD
+#endif
+#if defined(__CUDA_ARCH__)
+#define AERATE_UNROLL _Pragma("unroll")
+#else
+#define AERATE_UNROLL
 #endif

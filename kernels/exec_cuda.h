@@ -79,7 +79,7 @@ inline constexpr unsigned kBlock = 128;
 
 // The functor stays where the launch put it, in constant memory; no thread copies it.
 template <typename F>
-__global__ void __launch_bounds__(kBlock) run(const __grid_constant__ F f, std::size_t count) {
+__global__ void __launch_bounds__(kBlock, 1) run(const __grid_constant__ F f, std::size_t count) {
   const std::size_t i = static_cast<std::size_t>(blockIdx.x) * kBlock + threadIdx.x;
   if (i < count) f(i);
 }

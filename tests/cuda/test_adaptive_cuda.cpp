@@ -1,0 +1,69 @@
+#include <filesystem>
+
+#include "mesh/load.h"
+#include "packing/adaptive.h"
+#include "tests/cuda/cuda_test.h"
+#include "tests/cuda/same_bits.h"
+#include "tests/support/shapes.h"
+
+// The adaptive packer on a CUDA device beside the CPU: the same bytes.
+
+namespace aerate {
+namespace {
+
+using AdaptiveCuda = test::CudaTest;
+using Kind = DeviceRequest::Kind;
+
+void expect_same_on_cuda(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options,
+                         std::size_t least_spheres) {
+  Monitor monitor;
+  const Packing cpu = pack_adaptive(mesh, limits, options, monitor, {.kind = Kind::cpu});
+  const Packing cuda = pack_adaptive(mesh, limits, options, monitor, {.kind = Kind::cuda});
+  EXPECT_GE(cpu.spheres.size(), least_spheres);
+  test::expect_same_packing(cuda, cpu);
+  EXPECT_TRUE(cuda.device.name.starts_with("cuda:0 (")) << cuda.device.name;
+}
+
+TEST_F(AdaptiveCuda, PacksATorusAsTheCpuDoes) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  expect_same_on_cuda(torus, {0, 0, 0.5, 10}, {}, 20);
+  expect_same_on_cuda(torus, {0.2, 0.1, 0.4, 1.0}, {}, 20);
+}
+
+TEST_F(AdaptiveCuda, PacksALatticeFirstWhereSpheresAreSmall) {
+  expect_same_on_cuda(test::make_box({0, 0, 0}, {4, 4, 4}), {0, 0, 0.2, 0.4}, {}, 100);
+}
+
+TEST_F(AdaptiveCuda, PacksOverlappingPartsAsTheCpuDoes) {
+  expect_same_on_cuda(
+      test::join(test::make_box({0, 0, 0}, {10, 10, 10}), test::make_box({5, 5, 5}, {15, 15, 15})),
+      {0.5, 0.3, 0.7, 4}, {}, 20);
+}
+
+TEST_F(AdaptiveCuda, StopsAtACountAndADensityAsTheCpuDoes) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  expect_same_on_cuda(torus, {0, 0, 0.1, 10}, {.max_count = 25}, 25);
+  expect_same_on_cuda(torus, {0, 0, 0.1, 10}, {.target_density = 0.5}, 5);
+}
+
+struct RealModel {
+  const char* file;
+  PackingLimits limits;
+  std::size_t count;
+};
+
+class AdaptiveCudaOnModels : public AdaptiveCuda, public ::testing::WithParamInterface<RealModel> {};
+
+TEST_P(AdaptiveCudaOnModels, PacksAsTheCpuDoes) {
+  const std::filesystem::path file = std::filesystem::path(AERATE_SHARED) / "models" / GetParam().file;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  expect_same_on_cuda(load_model(file).mesh, GetParam().limits, {.max_count = GetParam().count},
+                      GetParam().count);
+}
+
+INSTANTIATE_TEST_SUITE_P(, AdaptiveCudaOnModels,
+                         ::testing::Values(RealModel{"capsule.stl", {0.1, 0.1, 0.05, 10}, 25},
+                                           RealModel{"bunny-7202.stl", {0.1, 0.05, 0.05, 10}, 25}));
+
+}  // namespace
+}  // namespace aerate
