@@ -215,9 +215,35 @@ double largest_coordinate(const Sphere& ball) {
   return std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) + ball.radius;
 }
 
-// Greatest sagitta of a template for the ball. Negative or tiny if there is none.
+// How far inside the ball its vertices are planned, so that none of them leaves it when its coordinates are
+// rounded to fp32. The largest coordinate M of the ball rounds by at most 2^-24 M, so a vertex moves by at
+// most sqrt(3) 2^-24 M < 2^-23 M; what is left covers the rounding of the fp64 arithmetic.
+double rounding_margin(const Sphere& ball) {
+  return std::ldexp(largest_coordinate(ball), -23);
+}
+
+// Greatest sagitta of a template for the ball, whose surface then lies at most `radius * sagitta + 2 *
+// rounding_margin` deep. Negative or tiny if there is none.
 double allowed_sagitta(const Sphere& ball, double tolerance) {
   return (tolerance - 2 * rounding_margin(ball)) / ball.radius;
+}
+
+// Throws unless fp32 can hold the ball's surface within `tolerance` mm where it is.
+void check_resolvable(const Sphere& ball, double tolerance) {
+  const double margin = rounding_margin(ball);
+  if (tolerance >= kMarginsPerTolerance * margin && ball.radius >= kMarginsPerRadius * margin) return;
+  throw FailureError("a void of radius " + std::to_string(ball.radius) + " mm at coordinates up to " +
+                         std::to_string(largest_coordinate(ball)) +
+                         " mm cannot be kept within a tolerance of " + std::to_string(tolerance) +
+                         " mm: coordinates in a mesh file are single precision",
+                     "move the model nearer to the origin, or raise --tolerance");
+}
+
+// Does the template keep the surface within `tolerance` mm of the sphere, and enough of its volume?
+bool suits(const BallTemplate& ball_template, const Sphere& ball, double tolerance) {
+  const double shrunk = 1 - rounding_margin(ball) / ball.radius;
+  return ball_template.sagitta <= allowed_sagitta(ball, tolerance) &&
+         ball_template.volume_share * shrunk * shrunk * shrunk >= kLeastVolumeShare;
 }
 
 // Scales and moves a template into its place in a mesh, turned inside out.
@@ -268,26 +294,6 @@ std::optional<BallTemplate> relax(BallTemplate ball) {
     }
   }
   return std::move(triangulation).measured();
-}
-
-double rounding_margin(const Sphere& ball) {
-  return std::ldexp(largest_coordinate(ball), -23);
-}
-
-void check_resolvable(const Sphere& ball, double tolerance) {
-  const double margin = rounding_margin(ball);
-  if (tolerance >= kMarginsPerTolerance * margin && ball.radius >= kMarginsPerRadius * margin) return;
-  throw FailureError("a void of radius " + std::to_string(ball.radius) + " mm at coordinates up to " +
-                         std::to_string(largest_coordinate(ball)) +
-                         " mm cannot be kept within a tolerance of " + std::to_string(tolerance) +
-                         " mm: coordinates in a mesh file are single precision",
-                     "move the model nearer to the origin, or raise --tolerance");
-}
-
-bool suits(const BallTemplate& ball_template, const Sphere& ball, double tolerance) {
-  const double shrunk = 1 - rounding_margin(ball) / ball.radius;
-  return ball_template.sagitta <= allowed_sagitta(ball, tolerance) &&
-         ball_template.volume_share * shrunk * shrunk * shrunk >= kLeastVolumeShare;
 }
 
 Solid assemble(Mesh outer, std::span<const Sphere> balls, std::span<const BallTemplate* const> templates) {

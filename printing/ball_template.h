@@ -34,20 +34,8 @@ std::optional<BallTemplate> project_onto_ball(const Mesh& surface, Vec3d centre)
 // nullopt if the result fails the checks of `project_onto_ball`.
 std::optional<BallTemplate> relax(BallTemplate ball);
 
-// How far inside the ball its vertices are planned, so that none of them leaves it when its coordinates are
-// rounded to fp32. The largest coordinate M of the ball rounds by at most 2^-24 M, so a vertex moves by at
-// most sqrt(3) 2^-24 M < 2^-23 M; what is left covers the rounding of the fp64 arithmetic.
-double rounding_margin(const Sphere& ball);
-
-// Throws FailureError if fp32 cannot hold the ball's surface within `tolerance` mm where it is.
-void check_resolvable(const Sphere& ball, double tolerance);
-
-// Does the template keep the ball's surface within `tolerance` mm of the sphere, and its volume above 90 %?
-bool suits(const BallTemplate& ball_template, const Sphere& ball, double tolerance);
-
 // The outer surface and the balls' as voids, facing inward, by a template for each. All of a void's surface
-// lies within its ball, at most `radius * sagitta + 2 * rounding_margin` deep. Throws FailureError for more
-// vertices than 32 bits can count.
+// lies within its ball. Throws FailureError for more vertices than 32 bits can count.
 Solid assemble(Mesh outer, std::span<const Sphere> balls, std::span<const BallTemplate* const> templates);
 
 // Templates of increasing refinement, each made when it is first asked for: OpenVDB level sets of balls whose
@@ -57,8 +45,9 @@ class BallLadder {
   BallLadder();
   ~BallLadder();
 
-  // The first level, and so about the coarsest, that suits the ball. Throws as `check_resolvable`, and
-  // FailureError if that took more than about a million triangles.
+  // The first level, and so about the coarsest, that keeps the surface of a ball within `tolerance` mm of the
+  // sphere and its volume above 90 %. Throws FailureError if fp32 cannot hold it so exactly at its place, or
+  // if that took more than about a million triangles.
   std::size_t level_for(const Sphere& ball, double tolerance);
 
   // Makes the levels that `level_for` will probably ask for, in parallel.

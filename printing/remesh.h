@@ -25,7 +25,8 @@ class ModelLevelSet {
   ModelLevelSet(ModelLevelSet&&) noexcept;
   ModelLevelSet& operator=(ModelLevelSet&&) noexcept;
 
-  // What the constructor reckons with, from the surface area alone: about the peak of its own memory.
+  // What the constructor reckons with, from the surface area alone: about the peak of its memory and of what
+  // `subtract` adds, without the triangles of the voids.
   static double estimated_bytes(const Mesh& mesh, double voxel_size);
 
   double voxel_size() const;
@@ -35,12 +36,12 @@ class ModelLevelSet {
   // one, so that walls hold in the result.
   Mesh surface() const;
 
-  // csgDifference(model, voids), meshed as a whole and split into shells: the outer ones are `surface()`, and
-  // each void's is found again as that of its sphere. Its vertices are then projected onto the planned sphere
-  // (within the tolerance, and inside, as in `carve_keeping_surface`). Where the voxels are too coarse for
-  // the tolerance the void's shell is made as `carve_keeping_surface` does, with a notice. Throws
-  // FailureError, naming the voxel size that would do, for a sphere that the voxels cannot hold and for voids
-  // that run together or into the surface at this voxel size; InterruptedError.
+  // csgDifference(model, voids), meshed as a whole and split into shells. The outer ones are `surface()`.
+  // Each void's has to be found again as that of its sphere, which proves that the voids are apart at this
+  // voxel size; since voxels that suit the model give a sphere several times the triangles it needs, and not
+  // the tolerance, the shell is then replaced as `carve_keeping_surface` makes it. Throws FailureError,
+  // naming the voxel size that would do, for a sphere that the voxels cannot hold and for voids that run
+  // together or into the surface at this voxel size, and as `carve_keeping_surface`; InterruptedError.
   Solid subtract(const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) const;
 
  private:
