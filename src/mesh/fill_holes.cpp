@@ -62,6 +62,7 @@ Repaired fill_holes(Mesh mesh, double max_diameter) {
   if (chains.empty()) return {std::move(mesh), {}};
 
   std::vector<BoundaryLoop> loops;
+  loops.reserve(chains.size());
   for (const BoundaryChain& chain : chains) loops.push_back(describe_loop(mesh, chain));
   const BoundaryLoop& largest = *std::max_element(
       loops.begin(), loops.end(), [](const auto& a, const auto& b) { return a.diameter < b.diameter; });

@@ -38,15 +38,6 @@ Counts sum_over(std::size_t count, const F& counts_of) {
       std::plus<Counts>());
 }
 
-// The difference of two fp32 coordinates is exact in fp64 unless they are apart by 2^29 or more, and so is
-// the product of two such differences: the cross product is zero for collinear corners only.
-bool has_no_area(const Mesh& mesh, const Triangle& triangle) {
-  const Vec3d a = to_double(mesh.positions[triangle[0]]);
-  const Vec3d b = to_double(mesh.positions[triangle[1]]);
-  const Vec3d c = to_double(mesh.positions[triangle[2]]);
-  return cross(b - a, c - a) == Vec3d{0, 0, 0};
-}
-
 // Among the uses of one edge, the triangles that repeat an earlier one. Each triangle is looked at once only:
 // at the edge that leaves its lowest vertex.
 std::size_t count_duplicates(const Mesh& mesh, std::uint32_t low, std::span<const EdgeUse> uses) {
@@ -88,6 +79,7 @@ bool boxes_meet(const Box3f& a, const Box3f& b) {
 // Sweep along x. Stops at the first pair.
 bool any_boxes_meet(const std::vector<Shell>& shells) {
   std::vector<const Box3f*> boxes;
+  boxes.reserve(shells.size());
   for (const Shell& shell : shells) boxes.push_back(&shell.box);
   std::sort(boxes.begin(), boxes.end(),
             [](const Box3f* a, const Box3f* b) { return a->lower.x < b->lower.x; });

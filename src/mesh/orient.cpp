@@ -30,6 +30,7 @@ std::vector<Vec3d> top_vertices(const Mesh& mesh, const ShellLabels& labels) {
     }
   }
   std::vector<Vec3d> points;
+  points.reserve(top.size());
   for (const std::uint32_t vertex : top) points.push_back(to_double(mesh.positions[vertex]));
   return points;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mesh/inspect.h"
+#include "mesh/topology.h"
 
 namespace aerate {
 namespace {
@@ -30,10 +31,6 @@ class IntersectionTest {
   Point point(std::uint32_t vertex) const {
     const Vec3d p = to_double(mesh_.positions[vertex]);
     return {p.x, p.y, p.z};
-  }
-
-  bool is_degenerate(const Triangle& t) const {
-    return CGAL::collinear(point(t[0]), point(t[1]), point(t[2]));
   }
 
   // Whether the triangles have a point in common that is not on a vertex or an edge that they share.
@@ -137,7 +134,7 @@ SelfIntersections find_self_intersections(const Mesh& mesh) {
   boxes.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& triangle = mesh.triangles[t];
-    if (test.is_degenerate(triangle)) continue;
+    if (has_no_area(mesh, triangle)) continue;
     boxes.emplace_back(
         test.point(triangle[0]).bbox() + test.point(triangle[1]).bbox() + test.point(triangle[2]).bbox(),
         static_cast<std::uint32_t>(t));

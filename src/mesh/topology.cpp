@@ -61,6 +61,15 @@ class DisjointSets {
 
 }  // namespace
 
+// The difference of two fp32 coordinates is exact in fp64 unless they are apart by 2^29 or more, and so is
+// the product of two such differences: the cross product is zero for collinear corners only.
+bool has_no_area(const Mesh& mesh, const Triangle& triangle) {
+  const Vec3d a = to_double(mesh.positions[triangle[0]]);
+  const Vec3d b = to_double(mesh.positions[triangle[1]]);
+  const Vec3d c = to_double(mesh.positions[triangle[2]]);
+  return cross(b - a, c - a) == Vec3d{0, 0, 0};
+}
+
 EdgeUses::EdgeUses(const Mesh& mesh) {
   const std::size_t rows = mesh.positions.size();
   const std::size_t triangles = mesh.triangles.size();

@@ -18,6 +18,9 @@ inline bool has_repeated_vertex(const Triangle& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
+// Whether its corners are collinear, exactly.
+bool has_no_area(const Mesh& mesh, const Triangle& triangle);
+
 // One triangle's use of an edge.
 struct EdgeUse {
   std::uint32_t high;       // the edge's higher vertex

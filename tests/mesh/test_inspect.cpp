@@ -238,6 +238,29 @@ TEST(Inspect, OverlapOfBallsAgreesWithItsFormula) {
   EXPECT_EQ(result.overlapping_shells, 2u);
 }
 
+TEST(Inspect, FlatMeshesHaveNoVolume) {
+  for (const Vec3f size : {Vec3f{0, 1, 2}, Vec3f{1, 0, 2}, Vec3f{1, 2, 0}, Vec3f{0, 0, 0}}) {
+    const Mesh flat = make_box({3, 3, 3}, Vec3f{3, 3, 3} + size);
+    for (const Mesh& mesh : {flat, join(flat, flat), turned_inside_out(flat)}) {
+      const Inspection result = inspect(mesh);
+      EXPECT_TRUE(result.closed());
+      EXPECT_EQ(result.volume, 0);
+      EXPECT_EQ(result.filled_volume, 0);
+      EXPECT_EQ(result.overlapped_volume, 0);
+    }
+  }
+}
+
+TEST(Inspect, OneTriangle) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const Inspection result = inspect(mesh);
+  EXPECT_EQ(result.open_edges, 3u);
+  ASSERT_EQ(result.boundary_loops.size(), 1u);
+  EXPECT_EQ(result.boundary_loops[0].edge_count, 3u);
+}
+
 // ---- against brute force
 
 struct Expected {
