@@ -194,7 +194,7 @@ Clearances measure_limits(const Mesh& outer, const std::vector<Sphere>& balls,
 }
 
 std::optional<Vec3d> centre_of_mass(double volume, Vec3d first_moment, const Inspection& inspection) {
-  if (inspection.overlapped_volume > 0) return std::nullopt;
+  if (inspection.parts_overlap()) return std::nullopt;
   return first_moment * (1.0 / volume);
 }
 
@@ -235,7 +235,7 @@ OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected) 
          outer_moments.volume - facts.volume_removed, whole_moments.volume);
 
   // With overlapping parts the signed volume counts the overlap twice; a slicer fills it once.
-  const bool overlapping = expected.inspection.overlapped_volume > 0;
+  const bool overlapping = expected.inspection.parts_overlap();
   facts.volume_before = overlapping ? expected.inspection.filled_volume : outer_moments.volume;
   facts.volume_after = overlapping ? facts.volume_before - facts.volume_removed : whole_moments.volume;
   facts.centre_of_mass_before =

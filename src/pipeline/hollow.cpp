@@ -52,7 +52,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   report.surface = model.level_set ? OuterSurface::remeshed : OuterSurface::kept;
   if (model.level_set) report.voxel_size = model.level_set->voxel_size();
   report.outer_deviation = model.outer_deviation;
-  report.volume_estimated = model.inspection.overlapped_volume > 0;
+  report.volume_estimated = model.inspection.parts_overlap();
 
   const Packing packing = pack_model(model, options.packing, log);
   report.packing_statistics = packing.statistics;

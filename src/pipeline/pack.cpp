@@ -67,7 +67,7 @@ Packing pack_model(const PreparedModel& model, const PackingRequest& request, Mo
   monitor.check_interrupted();
   if (packing.spheres.empty()) refuse_empty(model, request.limits);
 
-  if (model.inspection.overlapped_volume > 0 && packing.statistics.overlapped_region > 0)
+  if (model.inspection.parts_overlap() && packing.statistics.overlapped_region > 0)
     monitor.notice(
         fmt::format("parts of the model overlap in about {:.3g} mm3, which stay solid; --surface "
                     "remesh unites the parts first",
