@@ -36,12 +36,13 @@ class ModelLevelSet {
   // one, so that walls hold in the result.
   Mesh surface() const;
 
-  // csgDifference(model, voids), meshed as a whole and split into shells. The outer ones are `surface()`.
-  // Each void's has to be found again as that of its sphere, which proves that the voids are apart at this
-  // voxel size; since voxels that suit the model give a sphere several times the triangles it needs, and not
-  // the tolerance, the shell is then replaced as `carve_keeping_surface` makes it. Throws FailureError,
-  // naming the voxel size that would do, for a sphere that the voxels cannot hold and for voids that run
-  // together or into the surface at this voxel size, and as `carve_keeping_surface`; InterruptedError.
+  // Computes csgDifference(model, voids), meshes it as a whole and finds each void again as a shell of its
+  // own that follows its sphere: the proof that voids and surface are apart at this voxel size. The result is
+  // `surface()` and, for each void, the shell that `carve_keeping_surface` makes: voxels that suit the model
+  // give a sphere several times the triangles it needs, or miss the tolerance.
+  // Throws FailureError, naming the voxel size that would do, for a sphere that the voxels cannot hold and
+  // for voids that run together or into the surface at this voxel size; as `carve_keeping_surface`;
+  // InterruptedError.
   Solid subtract(const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) const;
 
  private:

@@ -12,6 +12,7 @@
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
 #include "mesh/load.h"
+#include "printing/level_set.h"
 #include "printing/remesh.h"
 #include "printing/shells.h"
 #include "tests/support/caught.h"
@@ -228,6 +229,21 @@ TEST_F(Subtract, GivesTheSurfaceAndEachVoidInOrder) {
     EXPECT_LE(deviation.highest, 0);
     EXPECT_GE(deviation.lowest, -kTolerance);
     EXPECT_LE(static_cast<double>(shell.triangles.size()), 2 * 4.84 * sphere.radius / kTolerance);
+  }
+}
+
+TEST_F(Subtract, TheDifferenceLeavesTheOuterSurfaceAsItIs) {
+  Monitor monitor;
+  const LevelSet model = LevelSet::of_solid(block_, 0.4, LevelSet::Interior::enclosed, monitor);
+  const Mesh whole = model.surface();
+  const Mesh cut = model.minus(LevelSet::of_balls(plan_.spheres, 0.4)).surface();
+  EXPECT_TRUE(is_sound(cut));
+  const std::vector<Mesh> shells = split_into_shells(cut);
+  EXPECT_EQ(shells.size(), 1 + plan_.spheres.size());
+  for (const Mesh& shell : shells) {
+    if (signed_volume(shell) < 0) continue;
+    EXPECT_EQ(shell.positions, whole.positions);
+    EXPECT_EQ(shell.triangles, whole.triangles);
   }
 }
 
