@@ -21,12 +21,14 @@ PartWriter::PartWriter(Welder& welder, const Affine& transform, double factor, c
     : welder_(welder),
       transform_(transform),
       factor_(factor),
-      as_read_(transform == Affine{} && factor == 1.0),
-      mirrored_(transform.mirrors()),
+      as_read_(transform.matrix() == Affine::Identity().matrix() && factor == 1.0),
+      mirrored_(transform.linear().determinant() < 0),
       name_(name) {}
 
 Vec3f PartWriter::convert(Vec3f corner) const {
-  return to_float(transform_(to_double(corner)) * factor_);
+  const Vec3d p = to_double(corner);
+  const Eigen::Vector3d moved = transform_ * Eigen::Vector3d(p.x, p.y, p.z) * factor_;
+  return to_float({moved.x(), moved.y(), moved.z()});
 }
 
 void PartWriter::add_triangle(Vec3f a, Vec3f b, Vec3f c) {

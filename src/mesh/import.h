@@ -1,15 +1,18 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <string>
 
-#include "mesh/affine.h"
 #include "mesh/file_check.h"
 #include "mesh/load.h"
 #include "mesh/weld.h"
 
 namespace aerate {
+
+// x -> A x + b, of a file's nodes, components and build items.
+using Affine = Eigen::Transform<double, 3, Eigen::AffineCompact>;
 
 // What the library that understands a format gives: millimetres, triangles in the order of the file, welded.
 struct ImportedModel {

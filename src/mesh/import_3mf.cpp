@@ -56,13 +56,9 @@ UnitOfFile unit_of_file(DWORD unit, const std::string& name) {
 }
 
 Affine to_affine(const NMR::MODELTRANSFORM& transform) {
-  Affine affine;
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) {
-      affine.rows[row][column] = static_cast<double>(transform.m_fFields[row][column]);
-    }
-  }
-  return affine;
+  using Fields = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
+  static_assert(sizeof(transform.m_fFields) == sizeof(Fields));
+  return Affine(Eigen::Map<const Fields>(&transform.m_fFields[0][0]).cast<double>());
 }
 
 class Reader3mf {
@@ -96,7 +92,7 @@ class Reader3mf {
       require(NMR::lib3mf_builditem_getobjectresource(item.get(), object.receive()), item);
       BOOL transformed = 0;
       require(NMR::lib3mf_builditem_hasobjecttransform(item.get(), &transformed), item);
-      Affine transform;
+      Affine transform = Affine::Identity();
       if (transformed) {
         NMR::MODELTRANSFORM fields{};
         require(NMR::lib3mf_builditem_getobjecttransform(item.get(), &fields), item);

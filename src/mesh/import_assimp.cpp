@@ -13,11 +13,9 @@ namespace aerate {
 namespace {
 
 Affine to_affine(const aiMatrix4x4& m) {
-  const auto row = [](ai_real a, ai_real b, ai_real c, ai_real d) {
-    return std::array<double, 4>{static_cast<double>(a), static_cast<double>(b), static_cast<double>(c),
-                                 static_cast<double>(d)};
-  };
-  return {{row(m.a1, m.a2, m.a3, m.a4), row(m.b1, m.b2, m.b3, m.b4), row(m.c1, m.c2, m.c3, m.c4)}};
+  using Rows = Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>;
+  static_assert(sizeof(m) == sizeof(Rows));
+  return Affine(Eigen::Map<const Rows>(&m.a1).topRows<3>().cast<double>());
 }
 
 std::size_t count_faces(const aiScene& scene) {
@@ -123,7 +121,8 @@ ImportedModel take_over(Assimp::Importer& importer, const FileFacts& facts, doub
   if (facts.vertex_count) model.vertices_in_file = *facts.vertex_count;
   if (needs_triangulation(*scene)) scene = triangulate(importer, name);
   Welder welder(faces);
-  if (scene->mRootNode != nullptr) add_node(*scene, *scene->mRootNode, Affine{}, factor, name, welder, model);
+  if (scene->mRootNode != nullptr)
+    add_node(*scene, *scene->mRootNode, Affine::Identity(), factor, name, welder, model);
   model.mesh = std::move(welder).finish();
   return model;
 }
