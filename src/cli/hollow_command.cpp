@@ -23,6 +23,11 @@ struct HollowCommand::Options {
     command.add_option("-o,--output", output, "The result: .stl, .obj or .ply (required)")
         ->required()
         ->type_name("FILE");
+    command
+        .add_option(
+            "--spheres", spheres,
+            "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
+        ->type_name("FILE");
     command.add_option("--tolerance", tolerance, "Void surfaces stay this far inside their spheres at most")
         ->check(number_between({}, kLongest, "mm"))
         ->type_name("MM")
@@ -69,6 +74,10 @@ struct HollowCommand::Options {
     options.output = output;
     options.load = model.load();
     options.packing = packing.request();
+    if (!spheres.empty()) {
+      options.packing.method = PackingMethod::given;
+      options.packing.spheres = spheres;
+    }
     options.surface =
         std::map<std::string, SurfaceMode>{
             {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}
@@ -91,6 +100,7 @@ struct HollowCommand::Options {
   PackingCommandOptions packing;
   RunOptions run;
   std::string output;
+  std::string spheres;
   double tolerance = HollowOptions{}.tolerance;
   std::optional<double> max_triangles;
   std::string surface = "auto";

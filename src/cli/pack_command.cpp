@@ -15,7 +15,9 @@ struct PackCommand::Options {
         model(command),
         packing(command),
         run(command) {
-    command.add_option("-o,--output", output, "The spheres: .csv, a line x,y,z,radius,kind each (required)")
+    command
+        .add_option("-o,--output", output,
+                    "The spheres: .csv (a line x,y,z,radius,kind each), .json or .ply (required)")
         ->required()
         ->type_name("FILE");
   }

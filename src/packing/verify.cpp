@@ -85,6 +85,34 @@ Packing verify_packing(const Mesh& mesh, Packing packing) {
   return packing;
 }
 
+std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing) {
+  const double tolerance = kRoundingShare * size_of(mesh);
+  std::vector<Vec3d> centres;
+  centres.reserve(packing.spheres.size());
+  for (const Sphere& sphere : packing.spheres) centres.push_back(sphere.centre);
+  const std::vector<double> distances = distances_to_surface(mesh, centres);
+  const std::vector<int> winding =
+      kernels::HostWinding(mesh.positions, mesh.triangles).winding_numbers(centres);
+
+  std::optional<PackingFault> first;
+  for (std::size_t i = 0; i < centres.size() && !first; ++i) {
+    const double wall = distances[i] - packing.spheres[i].radius;
+    if (winding[i] != 1) {
+      const auto kind = winding[i] == 0 ? PackingFault::Kind::outside : PackingFault::Kind::overlapped_region;
+      first = PackingFault{kind, i, i, wall};
+    } else if (wall < packing.limits.wall - tolerance) {
+      first = PackingFault{PackingFault::Kind::wall, i, i, wall};
+    }
+  }
+  for (const SpherePair& pair : find_pairs_within(packing.spheres, packing.limits.gap)) {
+    if (pair.gap >= packing.limits.gap - tolerance) continue;
+    if (!first || pair.second < first->sphere) {
+      first = PackingFault{PackingFault::Kind::gap, pair.second, pair.first, pair.gap};
+    }
+  }
+  return first;
+}
+
 std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d> points) {
   return kernels::HostTriangleBvh(mesh.positions, mesh.triangles).distances(points);
 }

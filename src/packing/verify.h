@@ -17,6 +17,23 @@ namespace aerate {
 // packing before it is used. Order is kept.
 Packing verify_packing(const Mesh& mesh, Packing packing);
 
+// A sphere that breaks its packing's limits by more than rounding explains.
+struct PackingFault {
+  enum class Kind {
+    outside,            // the winding number at its centre is 0
+    overlapped_region,  // the winding number is neither 0 nor 1
+    wall,               // too near to the surface
+    gap,                // too near to another sphere
+  };
+  Kind kind = Kind::outside;
+  std::size_t sphere = 0;
+  std::size_t other = 0;  // for `gap`: the other sphere, before this one
+  double clearance = 0;   // for `wall` and `gap`: what there is, mm; negative for an overlap
+};
+
+// The first such sphere, by index.
+std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing);
+
 // Exact (fp64) distance from each point to the surface of `mesh`, mm.
 std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d> points);
 

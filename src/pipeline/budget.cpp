@@ -23,9 +23,9 @@ void require(double needed, const std::string& what, const std::string& hint) {
   if (needed <= available) return;
   const std::string amount =
       std::isfinite(needed) ? "about " + format_bytes(needed) : std::string("more than can be counted");
-  throw UsageError(fmt::format("{} would need {}, and {} of memory are available", what, amount,
-                               format_bytes(available)),
-                   hint);
+  throw UsageError(
+      fmt::format("{} would need {}, and {} of memory are available", what, amount, format_bytes(available)),
+      hint);
 }
 
 }  // namespace
@@ -39,6 +39,8 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
           needed,
           fmt::format("packing spheres down to radius {:.3g} mm into this model", request.limits.min_radius),
           "give a larger --min-radius: the number of spheres grows with the inverse of its cube");
+      return;
+    case PackingMethod::given:
       return;
     case PackingMethod::hexagonal:
       needed = estimate_hexagonal_bytes(mesh, request.limits);

@@ -6,6 +6,8 @@ const char* name_of(PackingMethod method) {
   switch (method) {
     case PackingMethod::adaptive:
       return "adaptive";
+    case PackingMethod::given:
+      return "given";
     case PackingMethod::hexagonal:
       return "hexagonal";
   }

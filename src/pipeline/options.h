@@ -19,7 +19,11 @@ enum class SurfaceMode {
   remesh,     // the model becomes a level set and is meshed anew
 };
 
-enum class PackingMethod { adaptive, hexagonal };
+enum class PackingMethod {
+  adaptive,
+  hexagonal,
+  given,  // read from a file
+};
 
 // As on the command line.
 const char* name_of(PackingMethod method);
@@ -41,13 +45,14 @@ struct MaterialFigures {
 struct PackingRequest {
   PackingMethod method = PackingMethod::adaptive;
   PackingLimits limits = kDefaultLimits;
-  AdaptiveOptions stop;  // when the adaptive method stops; the hexagonal one has no such choice
+  std::filesystem::path spheres;  // of the method `given`
+  AdaptiveOptions stop;           // when the adaptive method stops; the hexagonal one has no such choice
   DeviceRequest device;
 };
 
 struct PackOptions {
   std::filesystem::path model;
-  std::filesystem::path output;  // .csv
+  std::filesystem::path output;  // .csv, .json or .ply
   LoadOptions load;
   PackingRequest packing;
 };

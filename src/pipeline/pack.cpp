@@ -16,10 +16,46 @@
 namespace aerate {
 namespace {
 
+// Spheres of a file, which have to be a packing of this model under these limits.
+Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
+  Packing packing;
+  packing.limits = request.limits;
+  packing.spheres = read_sphere_table(request.spheres);
+  packing.statistics.candidates = packing.spheres.size();
+  packing.device.reason = "the spheres were given";
+  const auto fault = find_fault(mesh, packing);
+  if (!fault) return packing;
+
+  const std::string file = request.spheres.filename().string();
+  const Sphere& sphere = packing.spheres[fault->sphere];
+  const std::string which =
+      fmt::format("{}: sphere {} (radius {:.4g} mm at ({:.3f}, {:.3f}, {:.3f}) mm)", file, fault->sphere + 1,
+                  sphere.radius, sphere.centre.x, sphere.centre.y, sphere.centre.z);
+  switch (fault->kind) {
+    case PackingFault::Kind::outside:
+      throw InputError(which + " is outside the model",
+                       "are the list and the model in the same unit and place?");
+    case PackingFault::Kind::overlapped_region:
+      throw InputError(which + " is where parts of the model overlap, and a slicer would fill it",
+                       "unite the parts first, or pack this model anew");
+    case PackingFault::Kind::wall:
+      throw InputError(fmt::format("{} leaves a wall of {:.4g} mm, the limit is {:.4g} mm", which,
+                                   fault->clearance, request.limits.wall),
+                       "give the --wall it was packed with, or pack again");
+    case PackingFault::Kind::gap:
+      throw InputError(fmt::format("{} leaves a gap of {:.4g} mm to sphere {}, the limit is {:.4g} mm", which,
+                                   fault->clearance, fault->other + 1, request.limits.gap),
+                       "give the --gap it was packed with, or pack again");
+  }
+  throw FailureError("unknown fault of a packing");
+}
+
 Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor& monitor) {
   switch (request.method) {
     case PackingMethod::adaptive:
       return pack_adaptive(mesh, request.limits, request.stop, monitor, request.device);
+    case PackingMethod::given:
+      return given_packing(mesh, request);
     case PackingMethod::hexagonal:
       return pack_hexagonal(mesh, request.limits, monitor, request.device);
   }
@@ -76,10 +112,7 @@ Packing pack_model(const PreparedModel& model, const PackingRequest& request, Mo
 }
 
 PackReport pack(const PackOptions& options, Monitor& monitor) {
-  if (options.output.extension() != ".csv") {
-    throw UsageError(fmt::format("{}: spheres are written as .csv", options.output.string()),
-                     "give a name that ends in .csv");
-  }
+  const SphereFormat format = sphere_format_of(options.output);
   require_other_file(options.model, options.output);
 
   JobLog log(monitor);
@@ -96,7 +129,7 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   log.stage("measure");
   report.clearances = measure_clearances(model.mesh, report.packing.spheres);
   log.stage("write");
-  table.commit_text(sphere_table_csv(report.packing));
+  table.commit_text(sphere_table(report.packing, format));
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

@@ -1,14 +1,30 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/packing.h"
 
 namespace aerate {
 
-// A packing as a table: a line "x,y,z,radius,kind", then one line a sphere, in mm in the model's own
-// coordinates, each number in the shortest form that reads back to the same fp64.
-std::string sphere_table_csv(const Packing& packing);
+// Spheres as a file, millimetres in the model's own coordinates; each number in the shortest form that reads
+// back to the same fp64.
+//   csv   a line "x,y,z,radius,kind", then one line a sphere
+//   json  {"schema": "aerate.spheres", "schema_version": 1, "unit": "mm", "spheres": [[x, y, z, radius,
+//   kind], ...]} ply   text; one vertex a sphere, properties x, y, z, radius (double) and kind (uchar, the
+//   order of SphereKind)
+enum class SphereFormat { csv, json, ply };
+
+// From the file name's ending (any case). Throws UsageError for another one.
+SphereFormat sphere_format_of(const std::filesystem::path& path);
+
+std::string sphere_table(const Packing& packing, SphereFormat format);
+
+// Reads any of the three; `kind` may be missing in a csv or json file (then it is `adaptive`). Throws
+// InputError, naming the line or the number of the sphere, for a missing file, other content, numbers that
+// are not finite, and radii that are not positive.
+std::vector<Sphere> read_sphere_table(const std::filesystem::path& path);
 
 // "lattice", "interstice", ...
 const char* name_of(SphereKind kind);
