@@ -92,6 +92,34 @@ TEST(Verify, DropsASphereWhereTwoPartsOverlap) {
   EXPECT_EQ(verified.spheres[0].centre.x, 2.5);
 }
 
+TEST(FindFault, NamesTheFirstSphereThatBreaksALimit) {
+  const Mesh mesh =
+      test::join(test::make_box({0, 0, 0}, {20, 20, 20}), test::make_box({15, 0, 0}, {35, 20, 20}));
+  Packing packing;
+  packing.limits = {1, 0.5, 0.5, 5};
+  packing.spheres = {{{5, 5, 5}, 4, SphereKind::lattice}};
+  EXPECT_FALSE(find_fault(mesh, packing).has_value());
+
+  const auto fault_with = [&](Vec3d centre, double radius) {
+    Packing changed = packing;
+    changed.spheres.push_back({centre, radius, SphereKind::lattice});
+    changed.spheres.push_back({{100, 0, 0}, 1, SphereKind::lattice});
+    return find_fault(mesh, changed);
+  };
+  const auto wall = fault_with({5, 15, 15}, 4.5);
+  ASSERT_TRUE(wall.has_value());
+  EXPECT_EQ(wall->kind, PackingFault::Kind::wall);
+  EXPECT_EQ(wall->sphere, 1U);
+  EXPECT_NEAR(wall->clearance, 0.5, 1e-12);
+  const auto gap = fault_with({5, 12, 5}, 2.75);
+  ASSERT_TRUE(gap.has_value());
+  EXPECT_EQ(gap->kind, PackingFault::Kind::gap);
+  EXPECT_EQ(gap->other, 0U);
+  EXPECT_NEAR(gap->clearance, 0.25, 1e-12);
+  EXPECT_EQ(fault_with({17.5, 10, 10}, 1)->kind, PackingFault::Kind::overlapped_region);
+  EXPECT_EQ(fault_with({50, 10, 10}, 1)->kind, PackingFault::Kind::outside);
+}
+
 TEST(Verify, IsTheSameForAnyNumberOfThreads) {
   const Mesh torus = test::make_torus(9, 4, 64, 32);
   Packing packing;
