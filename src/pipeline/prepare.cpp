@@ -87,15 +87,28 @@ bool holes_are_small(const Inspection& inspection, const SurfacePolicy& policy) 
                         hole_limit(model.inspection, policy), std::ceil(largest * 10) / 10));
 }
 
+// Replaces the mesh by a repaired one and passes on what was done.
+void adopt(PreparedModel& model, Repaired repaired, Monitor& monitor) {
+  for (const std::string& notice : repaired.notices) monitor.notice(notice);
+  model.mesh = std::move(repaired.mesh);
+  model.inspection = inspect(model.mesh);
+}
+
+void turn_outward(PreparedModel& model, Monitor& monitor) {
+  const auto is_inward = [](const Shell& shell) { return shell.volume < 0; };
+  if (std::any_of(model.inspection.shells.begin(), model.inspection.shells.end(), is_inward))
+    adopt(model, orient_outward(std::move(model.mesh)), monitor);
+}
+
 PreparedModel remesh(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor) {
   monitor.stage("remesh");
   if (model.inspection.open_edges > 0) {
     if (!holes_are_small(model.inspection, policy)) refuse_open(model, policy);
-    Repaired filled = fill_holes(std::move(model.mesh), hole_limit(model.inspection, policy));
-    for (const std::string& notice : filled.notices) monitor.notice(notice);
-    model.mesh = std::move(filled.mesh);
-    model.inspection = inspect(model.mesh);
+    monitor.notice(
+        fmt::format("{} closed", plural(model.inspection.boundary_loops.size(), "hole is", "holes are")));
+    adopt(model, fill_holes(std::move(model.mesh), hole_limit(model.inspection, policy)), monitor);
   }
+  turn_outward(model, monitor);
   require_solid(model);
   monitor.check_interrupted();
 
@@ -150,14 +163,8 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
 }
 
 PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor) {
-  const bool any_inward = std::any_of(model.inspection.shells.begin(), model.inspection.shells.end(),
-                                      [](const Shell& shell) { return shell.volume < 0; });
-  if (any_inward) {
-    Repaired turned = orient_outward(std::move(model.mesh));
-    for (const std::string& notice : turned.notices) monitor.notice(notice);
-    model.mesh = std::move(turned.mesh);
-    if (!turned.notices.empty()) model.inspection = inspect(model.mesh);
-  }
+  if (model.inspection.misoriented_edges > 0)
+    adopt(model, orient_consistently(std::move(model.mesh)), monitor);
 
   SurfaceMode mode = policy.mode;
   if (mode == SurfaceMode::automatic) {
@@ -169,6 +176,7 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
   }
   if (mode == SurfaceMode::remesh) return remesh(std::move(model), policy, monitor);
   if (model.inspection.open_edges > 0) refuse_open(model, policy);
+  turn_outward(model, monitor);
   require_solid(model);
   return model;
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <string>
 #include <sys/mount.h>
@@ -169,12 +170,42 @@ TEST(BadInput, InsideOutMeshIsTurnedWithANotice) {
   EXPECT_EQ(run(job.hollow(written)).exit_code, 0);
 }
 
-TEST(BadInput, TwistedTriangles) {
+TEST(BadInput, TwistedTriangleIsTurnedWithANotice) {
   Mesh mesh = block();
   std::swap(mesh.triangles[4][1], mesh.triangles[4][2]);
   const Job job;
-  expect_refused(job, run(job.hollow(job.input("twisted.stl", mesh))), kUnusable,
-                 {"twisted.stl", "3 edges", "normals"});
+  const ProcessResult result = run(job.hollow(job.input("twisted.stl", mesh)));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "aerate: note: "));
+  const std::string turned = read_bytes(job.output());
+  EXPECT_EQ(run(job.hollow(job.input("sound.stl", block()))).exit_code, 0);
+  EXPECT_EQ(read_bytes(job.output()).size(), turned.size());
+}
+
+TEST(BadInput, SurfaceWithoutTwoSides) {
+  // A Moebius strip of 12 quads: no choice of orientation is consistent, and it is open besides.
+  Mesh strip;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 12;
+    for (const double side : {-3.0, 3.0}) {
+      const double radius = 15 + side * std::cos(angle / 2);
+      strip.positions.push_back(
+          to_float({radius * std::cos(angle), radius * std::sin(angle), side * std::sin(angle / 2)}));
+    }
+  }
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const std::uint32_t a = 2 * i, b = a + 1;
+    const std::uint32_t c = i < 11 ? a + 2 : 1, d = i < 11 ? a + 3 : 0;
+    strip.triangles.push_back({a, b, d});
+    strip.triangles.push_back({a, d, c});
+  }
+  for (const char* surface : {"keep", "auto", "remesh"}) {
+    const Job job;
+    const ProcessResult result = run(job.hollow(job.input("moebius.stl", strip), {"--surface", surface}));
+    EXPECT_EQ(result.exit_code, kUnusable) << result.err;
+    EXPECT_TRUE(contains(result.err, "moebius.stl"));
+    EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+  }
 }
 
 TEST(BadInput, ModelSmallerThanTwiceTheWall) {
@@ -312,9 +343,14 @@ TEST(BadInput, UnknownMaterialListsTheKnownOnes) {
 TEST(BadInput, MoreThanMemoryHoldsIsRefusedBeforeWorkStarts) {
   const Job job;
   const auto model = job.input("large.stl", make_box({0, 0, 0}, {200, 200, 200}));
-  const ProcessResult result = run(job.hollow(
-      model, {"--max-radius", "0.01", "--min-radius", "0.001", "--gap", "0", "--tolerance", "0.0001"}));
-  expect_refused(job, result, kUsage, {"would need about", "are available", "--max-radius"});
+  const auto refused = [&](const std::string& method, const std::string& radius) {
+    const ProcessResult result =
+        run(job.hollow(model, {"--packing", method, "--max-radius", "0.01", "--min-radius", "0.001", "--gap",
+                               "0", "--tolerance", "0.0001"}));
+    expect_refused(job, result, kUsage, {"would need about", "are available", radius});
+  };
+  refused("adaptive", "--min-radius");
+  refused("hexagonal", "--max-radius");
 }
 
 TEST(BadInput, ScaleBeyondTheRangeOfTheCoordinates) {

@@ -92,7 +92,8 @@ TEST(Command, MaxTrianglesLoosensTheToleranceAndSaysSo) {
   const Job job;
   const auto report = job.folder() / "report.json";
   const ProcessResult result =
-      run(job.hollow(sample("bunny.stl"), {"--max-triangles", "30000", "--json", report.string()}));
+      run(job.hollow(sample("bunny.stl"),
+                     {"--packing", "hexagonal", "--max-triangles", "30000", "--json", report.string()}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(contains(result.err, "tolerance"));
   const Json json = Json::parse(read_bytes(report));

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+#include <string>
+#include <tbb/task_arena.h>
+#include <vector>
+
+#include "core/error.h"
+#include "pipeline/budget.h"
+#include "pipeline/job_log.h"
+#include "pipeline/material_choice.h"
+#include "pipeline/memory.h"
+#include "pipeline/read_back.h"
+#include "pipeline/sphere_table.h"
+#include "pipeline/thread_limit.h"
+#include "printing/carve.h"
+#include "printing/write.h"
+#include "tests/support/caught.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace aerate {
+namespace {
+
+using test::contains;
+using test::message_of;
+
+TEST(Memory, FiguresAreInTheRangeOfRealMachines) {
+  EXPECT_GT(available_memory_bytes(), 1e7);
+  EXPECT_GT(peak_memory_bytes(), 1e6);
+  EXPECT_LT(peak_memory_bytes(), 1e12);
+}
+
+TEST(Memory, PeakGrowsWithWhatIsUsed) {
+  const double before = peak_memory_bytes();
+  const std::vector<char> large(200'000'000, 'x');
+  EXPECT_GT(peak_memory_bytes(), before + 1e8) << large[5];
+}
+
+TEST(Memory, BytesInWords) {
+  EXPECT_EQ(format_bytes(999), "999 bytes");
+  EXPECT_EQ(format_bytes(1500), "1.5 kB");
+  EXPECT_EQ(format_bytes(3.24e9), "3.24 GB");
+}
+
+TEST(JobLog, KeepsStagesAndNoticesInOrder) {
+  Monitor silent;
+  JobLog log(silent);
+  log.stage("load");
+  log.stage("load");
+  log.notice("two parts");
+  log.stage("pack");
+  const std::vector<StageCost> stages = log.finish();
+  ASSERT_EQ(stages.size(), 2U);
+  EXPECT_EQ(stages[0].name, "load");
+  EXPECT_EQ(stages[1].name, "pack");
+  EXPECT_GE(stages[0].seconds, 0);
+  EXPECT_GT(stages[1].peak_bytes, 0);
+  EXPECT_EQ(log.notices(), std::vector<std::string>{"two parts"});
+}
+
+TEST(ThreadLimit, HoldsAndPassesExceptionsOn) {
+  for (const int threads : {1, 2, 8}) {
+    int concurrency = 0;
+    run_with_threads(threads, [&] { concurrency = tbb::this_task_arena::max_concurrency(); });
+    EXPECT_EQ(concurrency, threads);
+  }
+  EXPECT_THROW(run_with_threads(2, [] { throw InterruptedError(); }), InterruptedError);
+}
+
+TEST(Material, FiguresCanBeOverridden) {
+  EXPECT_EQ(choose_material("petg", {}, {}).name, "PETG");
+  const MaterialFigures dear = choose_material("PLA", {}, 90);
+  EXPECT_EQ(dear.price_per_kg, 90);
+  EXPECT_EQ(dear.density_g_cm3, choose_material("PLA", {}, {}).density_g_cm3);
+  EXPECT_EQ(choose_material("oak", 0.7, 3).density_g_cm3, 0.7);
+  EXPECT_TRUE(contains(message_of<UsageError>([] { choose_material("oak", 0.7, {}); }), "PLA"));
+}
+
+TEST(Budget, ToleranceIsLoosenedOnlyAsFarAsNeeded) {
+  const VoidPlan plan{{{{0, 0, 0}, 5, SphereKind::lattice}, {{20, 0, 0}, 2, SphereKind::lattice}}};
+  const double fine = 0.02;
+  EXPECT_EQ(tolerance_for(plan, fine, 100, {}), fine);
+  const std::size_t at_fine = estimate_void_triangles(plan, {.tolerance = fine});
+  EXPECT_EQ(tolerance_for(plan, fine, 100, 100 + at_fine), fine);
+
+  const double loosened = tolerance_for(plan, fine, 100, 100 + at_fine / 3);
+  EXPECT_GT(loosened, fine);
+  EXPECT_LE(estimate_void_triangles(plan, {.tolerance = loosened}), at_fine / 3);
+  EXPECT_TRUE(contains(message_of<UsageError>([&] { tolerance_for(plan, fine, 100, 99); }), "100 triangles"));
+}
+
+TEST(Budget, VoidsBeyondMemoryAreRefusedWithAnEstimate) {
+  VoidPlan plan;
+  plan.spheres.assign(1'000'000, {{0, 0, 0}, 5, SphereKind::lattice});
+  const std::string said = message_of<UsageError>([&] { require_memory_for_voids(plan, 1e-3, 1'000'000); });
+  EXPECT_TRUE(contains(said, "1000000 voids"));
+  EXPECT_TRUE(contains(said, "are available"));
+}
+
+TEST(SphereTable, HasOneLineForEachSphere) {
+  Packing packing;
+  packing.spheres = {{{1.5, -2, 0.1}, 3, SphereKind::tetrahedral}};
+  EXPECT_EQ(sphere_table_csv(packing), "x,y,z,radius,kind\n1.5,-2,0.1,3,tetrahedral\n");
+}
+
+TEST(ReadBack, EveryFormatGivesTheSameBitsAgain) {
+  const Mesh mesh = test::make_uv_sphere(1.0 / 3.0, 9, 11);  // coordinates that are no short decimals
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.stl", "a.obj", "a.ply"}) {
+    const auto path = folder.path() / name;
+    const MeshFormat format = mesh_format_of(path);
+    write_mesh(mesh, path, format);
+    const Mesh again = read_back(path, format);
+    ASSERT_EQ(again.triangles.size(), mesh.triangles.size()) << name;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        ASSERT_EQ(again.positions[again.triangles[i][k]], mesh.positions[mesh.triangles[i][k]]) << name;
+    }
+  }
+}
+
+TEST(ReadBack, DamagedObjIsNotTakenForWhatWasWritten) {
+  const test::TemporaryFolder folder;
+  for (const char* text : {"v 0 0\n", "v 0 0 0\nf 1 1 2\n", "v 0 0 0\nf 0 1 1\n", "nonsense\n"}) {
+    const auto path = folder.write("a.obj", text);
+    EXPECT_THROW(read_back(path, MeshFormat::obj), FailureError) << text;
+  }
+}
+
+}  // namespace
+}  // namespace aerate
