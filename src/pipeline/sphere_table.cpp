@@ -91,7 +91,9 @@ std::vector<Sphere> read_csv(std::istream& in, const std::string& file) {
 std::vector<Sphere> read_json(std::istream& in, const std::string& file) {
   std::vector<Sphere> spheres;
   try {
-    const nlohmann::json json = nlohmann::json::parse(in);
+    std::ostringstream text;
+    text << in.rdbuf();
+    const nlohmann::json json = nlohmann::json::parse(text.str());
     if (json.value("schema", "") != kSchema) fail({file, "schema"}, fmt::format("not '{}'", kSchema));
     if (json.value("unit", "") != "mm") fail({file, "unit"}, "not 'mm'");
     for (const nlohmann::json& entry : json.at("spheres")) {
