@@ -92,17 +92,20 @@ Packing packing_of(kernels::HexagonalResult result, const PackingLimits& limits)
   return packing;
 }
 
+// Cells of the lattice over a box, about.
+double lattice_cells(Vec3d extent, double radius) {
+  return (extent.x / (2 * radius) + 1) * (extent.y / (2 * kernels::HexagonalLattice::kRow * radius) + 1) *
+         (extent.z / (kernels::HexagonalLattice::kLayer * radius) + 1);
+}
+
 }  // namespace
 
 double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits) {
   const Box3f box = bounding_box(mesh);
   const Vec3d extent = to_double(box.upper) - to_double(box.lower);
   const double radius = limits.max_radius + limits.gap / 2;
-  const double cells = (extent.x / (2 * radius) + 1) *
-                       (extent.y / (2 * kernels::HexagonalLattice::kRow * radius) + 1) *
-                       (extent.z / (kernels::HexagonalLattice::kLayer * radius) + 1);
+  const double cells = lattice_cells(extent, radius);
   const double places = cells * static_cast<double>(kernels::kIntersticesPerCell);
-  if (!(places < kLargestCount)) return std::numeric_limits<double>::infinity();
   // Lattice spheres that meet the surface are replaced by 61: at most those in a shell of the box's area.
   const double box_area = 2 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
   const bool replaces = kernels::kRadiusOf61InUnitSphere * radius - limits.gap / 2 >= limits.min_radius;
@@ -123,7 +126,10 @@ double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits) {
 
 Packing pack_hexagonal(const Mesh& mesh, const PackingLimits& limits, Monitor& monitor,
                        const DeviceRequest& device) {
-  if (!std::isfinite(estimate_hexagonal_bytes(mesh, limits))) {
+  const Box3f box = bounding_box(mesh);
+  const double cells =
+      lattice_cells(to_double(box.upper) - to_double(box.lower), limits.max_radius + limits.gap / 2);
+  if (!(cells * static_cast<double>(kernels::kIntersticesPerCell) < kLargestCount)) {
     throw FailureError("the hexagonal packing would have more than 2^32 places", "raise --max-radius");
   }
   const kernels::HexagonalInput input = input_for(mesh, limits, monitor);

@@ -8,8 +8,7 @@
 namespace aerate {
 
 // Bytes that `pack_hexagonal` is going to need at most (index, candidates, result), from the bounding box and
-// the limits alone, so that a job can be refused before work starts. Infinite when the job is beyond the 2^32
-// places that a kind of sphere may have.
+// the limits alone, so that a job can be refused before work starts.
 double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits);
 
 // Hexagonal (AB-stacked) layers with interstitial spheres and 61-sphere replacements after Cuba and Loaiza,

@@ -1,6 +1,5 @@
 #include "pipeline/budget.h"
 
-#include <cmath>
 #include <fmt/format.h>
 #include <string>
 
@@ -21,11 +20,9 @@ constexpr double kBytesPerOutputTriangle = 500;
 void require(double needed, const std::string& what, const std::string& hint) {
   const double available = available_memory_bytes();
   if (needed <= available) return;
-  const std::string amount =
-      std::isfinite(needed) ? "about " + format_bytes(needed) : std::string("more than can be counted");
-  throw UsageError(
-      fmt::format("{} would need {}, and {} of memory are available", what, amount, format_bytes(available)),
-      hint);
+  throw UsageError(fmt::format("{} would need about {}, and {} of memory are available", what,
+                               format_bytes(needed), format_bytes(available)),
+                   hint);
 }
 
 }  // namespace

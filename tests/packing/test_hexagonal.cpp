@@ -4,6 +4,7 @@
 #include <map>
 #include <numbers>
 
+#include "core/error.h"
 #include "kernels/exec_cpu.h"
 #include "kernels/hexagonal.h"
 #include "packing/hexagonal.h"
@@ -209,7 +210,8 @@ TEST(Hexagonal, EstimateCoversWhatIsKeptAndRefusesTheAbsurd) {
   const Packing packing = pack_hexagonal(box, limits, monitor);
   EXPECT_GE(estimate_hexagonal_bytes(box, limits),
             static_cast<double>(packing.spheres.size() * sizeof(Sphere) + packing.statistics.index_bytes));
-  EXPECT_TRUE(std::isinf(estimate_hexagonal_bytes(box, {0, 0, 0, 1e-4})));
+  EXPECT_GT(estimate_hexagonal_bytes(box, {0, 0, 0, 1e-4}), 1e15);
+  EXPECT_THROW(pack_hexagonal(box, {0, 0, 0, 1e-4}, monitor), FailureError);
 }
 
 }  // namespace
