@@ -14,6 +14,7 @@
 #include "cli/inspect_command.h"
 #include "cli/interrupt.h"
 #include "cli/pack_command.h"
+#include "packing/device.h"
 
 namespace aerate::cli {
 namespace {
@@ -42,6 +43,12 @@ constexpr const char* kFooter =
   throw UsageError(what, "see '" + command + " --help'");
 }
 
+std::string version_and_devices() {
+  std::string text = "aerate " AERATE_VERSION;
+  for (const std::string& device : describe_devices()) text += "\n" + device;
+  return text;
+}
+
 // A full disk or a closed pipe behind standard output shows when it is flushed.
 void require_stdout_written() {
   errno = 0;
@@ -59,7 +66,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
       "Packs disjoint spheres inside a printable model, removes them as internal voids, and writes a\n"
       "watertight model for any slicer.",
       "aerate");
-  app.set_version_flag("--version", "aerate " AERATE_VERSION);
+  app.set_version_flag("--version", version_and_devices);
   app.footer(kFooter);
   app.require_subcommand(1);
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "packing/device.h"
 
 namespace aerate::cli {
 namespace {
@@ -84,6 +85,16 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command) {
                   "Adaptive packing: stop when voids fill this share of the model's volume, percent")
       ->check(number_between({}, 100, "%"))
       ->type_name("PERCENT");
+  const auto is_device = [](const std::string& text) {
+    return parse_device(text) ? std::string() : fmt::format("'{}' is not auto, cpu, cuda or cuda:N", text);
+  };
+  command
+      .add_option("--device", device_,
+                  "Where spheres are packed: auto (a CUDA device for large jobs, if there is one), cpu, cuda "
+                  "or cuda:N; the result is the same")
+      ->check(CLI::Validator(is_device, ""))
+      ->type_name("DEVICE")
+      ->capture_default_str();
 }
 
 PackingRequest PackingCommandOptions::request() const {
@@ -94,6 +105,7 @@ PackingRequest PackingCommandOptions::request() const {
   }
   PackingRequest request;
   request.limits = limits_;
+  request.device = parse_device(device_).value();
   if (packing_ == "hexagonal") {
     request.method = PackingMethod::hexagonal;
     if (max_voids_ || target_density_) {

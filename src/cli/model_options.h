@@ -26,7 +26,7 @@ struct ModelOptions {
   double scale_ = 1.0;
 };
 
-// --wall, --gap, --min-radius, --max-radius, --packing, --max-voids, --target-density
+// --wall, --gap, --min-radius, --max-radius, --packing, --max-voids, --target-density, --device
 struct PackingCommandOptions {
   explicit PackingCommandOptions(CLI::App& command);
   // Throws UsageError for options that contradict each other.
@@ -37,6 +37,7 @@ struct PackingCommandOptions {
   std::string packing_ = "adaptive";
   std::optional<double> max_voids_;
   std::optional<double> target_density_;  // percent
+  std::string device_ = "auto";
 };
 
 // --threads, --quiet, --json

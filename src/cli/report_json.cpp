@@ -61,8 +61,10 @@ Json json_of(const PackingLimits& limits) {
           {"max_radius_mm", limits.max_radius}};
 }
 
-Json json_of(PackingMethod method, double density, const PackingStatistics& statistics) {
+Json json_of(PackingMethod method, const DeviceUse& device, double density,
+             const PackingStatistics& statistics) {
   return {{"method", name_of(method)},
+          {"device", {{"name", device.name}, {"reason", device.reason}}},
           {"density", density},
           {"candidates", statistics.candidates},
           {"outside", statistics.outside},
@@ -118,7 +120,8 @@ std::string to_json(const HollowReport& report) {
   json["limits"] = json_of(report.limits);
   json["limits"]["tolerance_mm"] = report.tolerance_asked;
   json["limits"]["max_triangles"] = json_of(report.max_triangles);
-  json["packing"] = json_of(report.method, report.packing_density, report.packing_statistics);
+  json["packing"] =
+      json_of(report.method, report.packing_device, report.packing_density, report.packing_statistics);
   json["surface"] = {{"mode", report.surface == OuterSurface::kept ? "kept" : "remeshed"},
                      {"voxel_mm", json_of(report.voxel_size)},
                      {"outer_deviation_mm", json_of(report.outer_deviation)}};
@@ -149,7 +152,7 @@ std::string to_json(const PackReport& report) {
   Json json = header("pack");
   json["input"] = json_of(report.input);
   json["limits"] = json_of(report.packing.limits);
-  json["packing"] = json_of(report.method, report.density, report.packing.statistics);
+  json["packing"] = json_of(report.method, report.packing.device, report.density, report.packing.statistics);
   json["packing"]["spheres"] = report.packing.spheres.size();
   json["measured"] = report.clearances ? json_of(*report.clearances) : Json(nullptr);
   json["output"] = {{"path", report.output.string()}};

@@ -62,6 +62,10 @@ void add_stages(Lines& lines, const std::vector<StageCost>& stages) {
   lines.add("time", "{:.2f} s ({}), memory {} at most", total.seconds, parts, format_bytes(total.peak_bytes));
 }
 
+void add_device(Lines& lines, const DeviceUse& device) {
+  lines.add("packed on", "{}: {}", device.name, device.reason);
+}
+
 // "0.620 to 3.500 mm"
 std::string radii(double smallest, double largest) {
   const std::string from = fmt::format("{:.3f}", smallest);
@@ -83,6 +87,7 @@ std::string to_text(const HollowReport& report) {
             count_of(output.void_count, "sphere", "spheres"),
             radii(output.smallest_radius, output.largest_radius), name_of(report.method),
             100 * report.packing_density);
+  add_device(lines, report.packing_device);
   lines.add("removed", "{:.1f} of {:.1f} mm3 ({:.2f} %), {:.1f} mm3 left{}", output.volume_removed,
             output.volume_before, 100 * output.volume_removed / output.volume_before, output.volume_after,
             report.volume_estimated ? "; the model's volume is an estimate, since parts overlap" : "");
@@ -120,6 +125,7 @@ std::string to_text(const PackReport& report) {
   lines.add("spheres", "{}, radius {}; {} packing, {:.2f} % of the model",
             count_of(spheres.size(), "sphere", "spheres"), radii(smallest->radius, largest->radius),
             name_of(report.method), 100 * report.density);
+  add_device(lines, report.packing.device);
   if (report.clearances) {
     lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})",
               report.clearances->wall, report.packing.limits.wall, gap_in_words(*report.clearances),

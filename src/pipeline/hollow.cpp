@@ -56,6 +56,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
 
   const Packing packing = pack_model(model, options.packing, log);
   report.packing_statistics = packing.statistics;
+  report.packing_device = packing.device;
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
   const VoidPlan plan{packing.spheres};

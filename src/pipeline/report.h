@@ -66,6 +66,7 @@ struct HollowReport {
   PackingMethod method = PackingMethod::adaptive;
   PackingStatistics packing_statistics;
   double packing_density = 0;  // volume of the planned balls over that of the packed model
+  DeviceUse packing_device;
 
   OuterSurface surface = OuterSurface::kept;
   // When remeshed: voxel edge, and the largest distance of a new vertex from the model as it was read. mm.
