@@ -27,11 +27,23 @@ TEST(Command, HelpNamesUnitsDefaultsAndExitCodes) {
   EXPECT_EQ(hollow.err, "");
 }
 
-TEST(Command, VersionIsOneLine) {
+TEST(Command, VersionTellsWhatPackingCanRunOn) {
   const ProcessResult result = run({AERATE_EXECUTABLE, "--version"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.out.substr(0, 7), "aerate ");
-  EXPECT_EQ(result.out.find('\n'), result.out.size() - 1);
+  EXPECT_TRUE(contains(result.out, "\ncpu: "));
+  EXPECT_TRUE(contains(result.out, "\ncuda")) << result.out;
+}
+
+TEST(Command, DeviceIsAChoiceThatTheReportNames) {
+  const Job job;
+  const ProcessResult cpu = run(job.hollow(sample("bracket.stl"), {"--device", "cpu", "--json", "-"}));
+  ASSERT_EQ(cpu.exit_code, 0) << cpu.err;
+  EXPECT_EQ(Json::parse(cpu.out)["packing"]["device"]["name"], "cpu");
+  EXPECT_EQ(Json::parse(cpu.out)["packing"]["device"]["reason"], "asked for");
+  const ProcessResult unknown = run(job.hollow(sample("bracket.stl"), {"--device", "gpu"}));
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(contains(unknown.err, "'gpu' is not auto, cpu, cuda or cuda:N")) << unknown.err;
 }
 
 TEST(Command, WithoutASubcommandSaysWhatToDo) {
@@ -121,6 +133,8 @@ TEST(Command, JsonHasTheFieldsOfTheSchema) {
                               "/limits/max_radius_mm",
                               "/limits/tolerance_mm",
                               "/packing/method",
+                              "/packing/device/name",
+                              "/packing/device/reason",
                               "/packing/density",
                               "/packing/candidates",
                               "/surface/mode",
