@@ -159,9 +159,10 @@ struct MakeRoots {
   std::uint32_t count_x, count_y;
 
   AERATE_HD void operator()(std::size_t i) const {
-    const auto x = static_cast<double>(i % count_x);
-    const auto y = static_cast<double>(i / count_x % count_y);
-    const auto z = static_cast<double>(i / count_x / count_y);
+    const std::size_t column = i % count_x, row = i / count_x % count_y, layer = i / count_x / count_y;
+    const auto x = static_cast<double>(column);
+    const auto y = static_cast<double>(row);
+    const auto z = static_cast<double>(layer);
     const Vec3d centre = origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * edge;
     const SurfaceAnchor anchor = anchor_at(field, {centre, 0, kNoFacet}, centre);
     cells.cells[i] = {centre, anchor.signed_distance, anchor.facet, 0};
