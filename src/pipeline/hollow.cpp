@@ -43,11 +43,9 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);
-  model = make_usable(
-      std::move(model),
-      {options.surface, options.max_hole,
-       options.voxel_size.value_or(default_voxel_size(options.packing.limits, model.inspection.box))},
-      log);
+  const double voxel_size =
+      options.voxel_size.value_or(default_voxel_size(options.packing.limits, model.inspection.box));
+  model = make_usable(std::move(model), {options.surface, options.max_hole, voxel_size}, log);
   report.input = model.input;
   report.surface = model.level_set ? OuterSurface::remeshed : OuterSurface::kept;
   if (model.level_set) report.voxel_size = model.level_set->voxel_size();
