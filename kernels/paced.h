@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <utility>
+
+#include "kernels/annotations.h"
+
+namespace aerate::kernels {
+
+// Kernel: f for the elements from `first` on.
+template <typename F>
+struct FromIndex {
+  F f;
+  std::size_t first;
+
+  AERATE_HD void operator()(std::size_t i) const { f(first + i); }
+};
+
+// Runs long loops on an executor in pieces of about a quarter of a second and calls `poll` between them; what
+// that throws ends the loop. The sizes of the pieces follow the clock, on which no result depends.
+template <typename Executor>
+class Paced {
+ public:
+  Paced(const Executor& executor, std::function<void()> poll) : executor_(executor), poll_(std::move(poll)) {}
+
+  template <typename F>
+  void for_each_index(std::size_t count, F f) {
+    using Clock = std::chrono::steady_clock;
+    std::size_t piece = kFirstPiece;
+    for (std::size_t first = 0; first < count;) {
+      const std::size_t size = std::min(piece, count - first);
+      const Clock::time_point start = Clock::now();
+      executor_.for_each_index(size, FromIndex<F>{f, first});
+      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      first += size;
+      if (seconds < 0.5 * kPieceSeconds) piece *= 2;
+      if (seconds > 2 * kPieceSeconds) piece = std::max(piece / 2, kFirstPiece);
+      poll_();
+    }
+  }
+
+ private:
+  static constexpr std::size_t kFirstPiece = 8192;
+  static constexpr double kPieceSeconds = 0.25;
+
+  const Executor& executor_;
+  std::function<void()> poll_;
+};
+
+}  // namespace aerate::kernels
