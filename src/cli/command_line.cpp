@@ -14,7 +14,9 @@
 #include "cli/inspect_command.h"
 #include "cli/interrupt.h"
 #include "cli/pack_command.h"
+#include "cli/process_options.h"
 #include "packing/device.h"
+#include "pipeline/process_choice.h"
 
 namespace aerate::cli {
 namespace {
@@ -70,13 +72,17 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   app.footer(kFooter);
   app.require_subcommand(1);
 
-  HollowCommand hollow(app);
-  PackCommand pack(app);
+  const ConfigFile config(app);
+  HollowCommand hollow(app, config);
+  PackCommand pack(app, config);
   InspectCommand inspect(app);
-  read_config_files(app);
 
   try {
     app.parse(argc, argv);
+  } catch (const ProcessListRequest&) {
+    std::cout << processes_in_words();
+    require_stdout_written();
+    return ExitCode::done;
   } catch (const CLI::Success& request) {  // --help, --version
     app.exit(request);
     require_stdout_written();

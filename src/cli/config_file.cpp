@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace aerate::cli {
@@ -9,7 +10,8 @@ namespace {
 
 class CommandConfig final : public CLI::ConfigTOML {
  public:
-  explicit CommandConfig(const CLI::App& app) : app_(app) {}
+  CommandConfig(const CLI::App& app, std::shared_ptr<std::set<std::string>> read)
+      : app_(app), read_(std::move(read)) {}
 
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> found = CLI::ConfigTOML::from_config(input);
@@ -18,20 +20,28 @@ class CommandConfig final : public CLI::ConfigTOML {
     if (commands.empty()) return found;
     for (CLI::ConfigItem& item : found) {
       if (item.parents.empty()) item.parents.push_back(commands.front()->get_name());
+      // The command line goes before the file, and has been read by now.
+      const CLI::Option* option = commands.front()->get_option_no_throw("--" + item.name);
+      if (option != nullptr && option->count() == 0) read_->insert(option->get_name());
     }
     return found;
   }
 
  private:
   const CLI::App& app_;
+  std::shared_ptr<std::set<std::string>> read_;
 };
 
 }  // namespace
 
-void read_config_files(CLI::App& app) {
+ConfigFile::ConfigFile(CLI::App& app) : read_(std::make_shared<std::set<std::string>>()) {
   app.set_config("--config", "", "Read options from this file (TOML or INI)")->type_name("FILE");
   app.allow_config_extras(CLI::config_extras_mode::error);
-  app.config_formatter(std::make_shared<CommandConfig>(app));
+  app.config_formatter(std::make_shared<CommandConfig>(app, read_));
+}
+
+std::string ConfigFile::origin_of(const CLI::Option& option) const {
+  return read_->contains(option.get_name()) ? "configuration file" : "command line";
 }
 
 }  // namespace aerate::cli

@@ -1,13 +1,27 @@
 #pragma once
 
+#include <memory>
+#include <set>
+#include <string>
+
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace aerate::cli {
 
-// Adds --config FILE to the program (TOML or INI). Keys outside any section belong to the command being run.
-// An unknown key is an error.
-void read_config_files(CLI::App& app);
+// --config FILE of the program (TOML or INI). Keys outside any section belong to the command being run. An
+// unknown key is an error.
+class ConfigFile {
+ public:
+  explicit ConfigFile(CLI::App& app);  // adds the option
+
+  // Where the value of an option that was given came from: "command line" or "configuration file".
+  std::string origin_of(const CLI::Option& option) const;
+
+ private:
+  std::shared_ptr<std::set<std::string>> read_;  // the options whose values the file gave
+};
 
 }  // namespace aerate::cli

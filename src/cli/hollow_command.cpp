@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/model_options.h"
+#include "cli/numbers.h"
 #include "cli/run_reported.h"
 #include "core/error.h"
 #include "pipeline/hollow.h"
@@ -15,10 +16,10 @@
 namespace aerate::cli {
 
 struct HollowCommand::Options {
-  explicit Options(CLI::App& app)
+  Options(CLI::App& app, const ConfigFile& config)
       : command(*app.add_subcommand("hollow", "Remove packed spheres from a model and write the result")),
         model(command),
-        packing(command),
+        packing(command, config),
         run(command) {
     command.add_option("-o,--output", output, "The result: .stl, .obj or .ply (required)")
         ->required()
@@ -57,9 +58,9 @@ struct HollowCommand::Options {
         ->type_name("MM");
     command
         .add_option("--material", material,
-                    "For mass and cost: " + material_names() + ", or any with --density and --price")
-        ->type_name("NAME")
-        ->capture_default_str();
+                    "For mass and cost: " + material_names() +
+                        ", or any with --density and --price (default of the process; fdm: PLA)")
+        ->type_name("NAME");
     command.add_option("--density", density, "Density of the material instead, g/cm3")
         ->check(number_between({}, 100, "g/cm3"))
         ->type_name("G/CM3");
@@ -86,7 +87,8 @@ struct HollowCommand::Options {
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
-    options.material = choose_material(material, density, price);
+    options.material = choose_material(material.empty() ? options.packing.process.process.material : material,
+                                       density, price);
     if (tolerance > options.packing.limits.min_radius / 2) {
       throw UsageError(fmt::format("--tolerance {} mm is more than half of --min-radius {} mm", tolerance,
                                    options.packing.limits.min_radius),
@@ -106,12 +108,13 @@ struct HollowCommand::Options {
   std::string surface = "auto";
   std::optional<double> voxel_size;
   std::optional<double> max_hole;
-  std::string material = "PLA";
+  std::string material;
   std::optional<double> density;
   std::optional<double> price;
 };
 
-HollowCommand::HollowCommand(CLI::App& app) : options_(std::make_unique<Options>(app)) {}
+HollowCommand::HollowCommand(CLI::App& app, const ConfigFile& config)
+    : options_(std::make_unique<Options>(app, config)) {}
 HollowCommand::~HollowCommand() = default;
 
 bool HollowCommand::chosen() const {

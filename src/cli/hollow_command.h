@@ -8,12 +8,13 @@ class App;
 
 namespace aerate::cli {
 
+class ConfigFile;
 class InterruptGuard;
 
 // aerate hollow
 class HollowCommand {
  public:
-  explicit HollowCommand(CLI::App& app);  // adds itself
+  HollowCommand(CLI::App& app, const ConfigFile& config);  // adds itself
   ~HollowCommand();
   HollowCommand(const HollowCommand&) = delete;
   HollowCommand& operator=(const HollowCommand&) = delete;

@@ -1,10 +1,9 @@
 #include "cli/model_options.h"
 
-#include <charconv>
-#include <cmath>
 #include <fmt/format.h>
 #include <map>
 
+#include "cli/numbers.h"
 #include "core/error.h"
 #include "packing/device.h"
 
@@ -20,22 +19,6 @@ const std::map<std::string, LengthUnit>& units() {
 }
 
 }  // namespace
-
-CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit) {
-  const std::string suffix = unit.empty() ? "" : " " + unit;
-  const auto check = [least, most, suffix](const std::string& text) -> std::string {
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
-    if (!is_number) return fmt::format("'{}' is not a number", text);
-    if (number > most) return fmt::format("{}{} is too much (at most {}{})", text, suffix, most, suffix);
-    if (least && number < *least)
-      return fmt::format("{}{} is too little (at least {}{})", text, suffix, *least, suffix);
-    if (!least && number <= 0) return fmt::format("{}{} is too little (more than 0{})", text, suffix, suffix);
-    return {};
-  };
-  return CLI::Validator(check, "");
-}
 
 ModelOptions::ModelOptions(CLI::App& command) {
   command.add_option("MODEL", path, "The model: STL, OBJ, PLY, OFF or 3MF")->required()->type_name("");
@@ -57,18 +40,8 @@ LoadOptions ModelOptions::load() const {
   return options;
 }
 
-PackingCommandOptions::PackingCommandOptions(CLI::App& command) {
-  const auto add_length = [&](const char* name, double& value, const char* what,
-                              std::optional<double> least) {
-    command.add_option(name, value, what)
-        ->check(number_between(least, kLongest, "mm"))
-        ->type_name("MM")
-        ->capture_default_str();
-  };
-  add_length("--wall", limits_.wall, "Least thickness between a void and the model's surface", 0.0);
-  add_length("--gap", limits_.gap, "Least thickness between two voids", 0.0);
-  add_length("--min-radius", limits_.min_radius, "Smaller voids are not made", {});
-  add_length("--max-radius", limits_.max_radius, "Radius of the largest voids", {});
+PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile& config)
+    : process_(command, config) {
   command
       .add_option(
           "--packing", packing_,
@@ -98,13 +71,9 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command) {
 }
 
 PackingRequest PackingCommandOptions::request() const {
-  if (limits_.min_radius > limits_.max_radius) {
-    throw UsageError(fmt::format("--min-radius {} mm is more than --max-radius {} mm", limits_.min_radius,
-                                 limits_.max_radius),
-                     "give a smaller --min-radius or a larger --max-radius");
-  }
   PackingRequest request;
-  request.limits = limits_;
+  request.process = process_.choice();
+  request.limits = packing_limits(request.process);
   request.device = parse_device(device_).value();
   if (packing_ == "hexagonal") {
     request.method = PackingMethod::hexagonal;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/process_options.h"
 #include "cli/terminal.h"
 #include "core/packing.h"
 #include "mesh/load.h"
@@ -26,14 +27,14 @@ struct ModelOptions {
   double scale_ = 1.0;
 };
 
-// --wall, --gap, --min-radius, --max-radius, --packing, --max-voids, --target-density, --device
+// --process, --wall, --gap, --min-radius, --max-radius, --packing, --max-voids, --target-density, --device
 struct PackingCommandOptions {
-  explicit PackingCommandOptions(CLI::App& command);
+  PackingCommandOptions(CLI::App& command, const ConfigFile& config);
   // Throws UsageError for options that contradict each other.
   PackingRequest request() const;
 
  private:
-  PackingLimits limits_ = kDefaultLimits;
+  ProcessOptions process_;
   std::string packing_ = "adaptive";
   std::optional<double> max_voids_;
   std::optional<double> target_density_;  // percent
@@ -51,11 +52,5 @@ struct RunOptions {
  private:
   bool quiet_ = false;
 };
-
-// Accepts a number in [least, most], or in (0, most] with `least` absent; `unit` is for the message.
-CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit);
-
-// No length of a print is beyond this, mm.
-inline constexpr double kLongest = 1e5;
 
 }  // namespace aerate::cli

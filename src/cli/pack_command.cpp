@@ -10,10 +10,10 @@
 namespace aerate::cli {
 
 struct PackCommand::Options {
-  explicit Options(CLI::App& app)
+  Options(CLI::App& app, const ConfigFile& config)
       : command(*app.add_subcommand("pack", "Pack spheres in a closed model and write them as a table")),
         model(command),
-        packing(command),
+        packing(command, config),
         run(command) {
     command
         .add_option("-o,--output", output,
@@ -29,7 +29,8 @@ struct PackCommand::Options {
   std::string output;
 };
 
-PackCommand::PackCommand(CLI::App& app) : options_(std::make_unique<Options>(app)) {}
+PackCommand::PackCommand(CLI::App& app, const ConfigFile& config)
+    : options_(std::make_unique<Options>(app, config)) {}
 PackCommand::~PackCommand() = default;
 
 bool PackCommand::chosen() const {

@@ -8,12 +8,13 @@ class App;
 
 namespace aerate::cli {
 
+class ConfigFile;
 class InterruptGuard;
 
 // aerate pack
 class PackCommand {
  public:
-  explicit PackCommand(CLI::App& app);  // adds itself
+  PackCommand(CLI::App& app, const ConfigFile& config);  // adds itself
   ~PackCommand();
   PackCommand(const PackCommand&) = delete;
   PackCommand& operator=(const PackCommand&) = delete;

@@ -61,6 +61,21 @@ Json json_of(const PackingLimits& limits) {
           {"max_radius_mm", limits.max_radius}};
 }
 
+Json json_of(const ProcessChoice& choice) {
+  Json origins = Json::array();
+  for (const LimitOrigin& limit : choice.origins) {
+    origins.push_back({{"limit", name_of(limit.limit)},
+                       {"value", limit.value},
+                       {"unit", unit_of(limit.limit)},
+                       {"origin", limit.origin},
+                       {"source", limit.source.empty() ? Json(nullptr) : Json(limit.source)}});
+  }
+  return {{"name", choice.process.name},
+          {"title", choice.process.title},
+          {"drainage_needed", choice.process.drainage == Drainage::needed},
+          {"limits", origins}};
+}
+
 Json json_of(PackingMethod method, const DeviceUse& device, double density,
              const PackingStatistics& statistics) {
   return {{"method", name_of(method)},
@@ -117,6 +132,7 @@ std::string to_json(const HollowReport& report) {
   const OutputFacts& output = report.output;
   Json json = header("hollow");
   json["input"] = json_of(report.input);
+  json["process"] = json_of(report.process);
   json["limits"] = json_of(report.limits);
   json["limits"]["tolerance_mm"] = report.tolerance_asked;
   json["limits"]["max_triangles"] = json_of(report.max_triangles);
@@ -151,6 +167,7 @@ std::string to_json(const HollowReport& report) {
 std::string to_json(const PackReport& report) {
   Json json = header("pack");
   json["input"] = json_of(report.input);
+  json["process"] = json_of(report.process);
   json["limits"] = json_of(report.packing.limits);
   json["packing"] = json_of(report.method, report.packing.device, report.density, report.packing.statistics);
   json["packing"]["spheres"] = report.packing.spheres.size();

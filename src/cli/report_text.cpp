@@ -66,6 +66,24 @@ void add_device(Lines& lines, const DeviceUse& device) {
   lines.add("packed on", "{}: {}", device.name, device.reason);
 }
 
+// Each limit with where it came from; those of the same origin together.
+void add_limits(Lines& lines, const ProcessChoice& choice) {
+  lines.add("process", "{}: {}", choice.process.name, choice.process.title);
+  std::vector<std::string> origins;
+  for (const LimitOrigin& limit : choice.origins)
+    if (std::find(origins.begin(), origins.end(), limit.origin) == origins.end())
+      origins.push_back(limit.origin);
+  for (const std::string& origin : origins) {
+    std::string values;
+    for (const LimitOrigin& limit : choice.origins) {
+      if (limit.origin == origin)
+        values +=
+            fmt::format("{}{} {:.4g} mm", values.empty() ? "" : ", ", name_of(limit.limit), limit.value);
+    }
+    lines.add("", "{} ({})", values, origin);
+  }
+}
+
 // "0.620 to 3.500 mm"
 std::string radii(double smallest, double largest) {
   const std::string from = fmt::format("{:.3f}", smallest);
@@ -83,6 +101,7 @@ std::string to_text(const HollowReport& report) {
   const OutputFacts& output = report.output;
   Lines lines;
   add_input(lines, report.input);
+  add_limits(lines, report.process);
   lines.add("voids", "{}, radius {}; {} packing, {:.2f} % of the model",
             count_of(output.void_count, "sphere", "spheres"),
             radii(output.smallest_radius, output.largest_radius), name_of(report.method),
@@ -122,6 +141,7 @@ std::string to_text(const PackReport& report) {
       spheres.begin(), spheres.end(), [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
   Lines lines;
   add_input(lines, report.input);
+  add_limits(lines, report.process);
   lines.add("spheres", "{}, radius {}; {} packing, {:.2f} % of the model",
             count_of(spheres.size(), "sphere", "spheres"), radii(smallest->radius, largest->radius),
             name_of(report.method), 100 * report.density);

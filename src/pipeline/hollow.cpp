@@ -35,11 +35,13 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   JobLog log(monitor);
   HollowReport report;
   report.limits = options.packing.limits;
+  report.process = options.packing.process;
   report.method = options.packing.method;
   report.tolerance_asked = options.tolerance;
   report.max_triangles = options.max_triangles;
   report.material = options.material;
 
+  warn_of_trapped_material(options.packing.process.process, log);
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);

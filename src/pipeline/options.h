@@ -9,6 +9,7 @@
 #include "core/packing.h"
 #include "mesh/load.h"
 #include "packing/adaptive.h"
+#include "pipeline/process_choice.h"
 
 namespace aerate {
 
@@ -28,12 +29,6 @@ enum class PackingMethod {
 // As on the command line.
 const char* name_of(PackingMethod method);
 
-// Limits for a 0.4 mm nozzle, and why:
-//   wall 1.2 mm: three extrusion lines; gap 0.9 mm: two extrusion lines, the least that separates two voids;
-//   max_radius 3.5 mm: the ceiling of a larger sphere, where it is flatter than 45 degrees, is wider than the
-//   5 mm that a printer bridges well (1.41 r); min_radius 0.62 mm: 1 mm3, below which slicers drop shells.
-inline constexpr PackingLimits kDefaultLimits{.wall = 1.2, .gap = 0.9, .min_radius = 0.62, .max_radius = 3.5};
-
 // What the figures for mass and cost are computed with.
 struct MaterialFigures {
   std::string name;
@@ -45,6 +40,7 @@ struct MaterialFigures {
 struct PackingRequest {
   PackingMethod method = PackingMethod::adaptive;
   PackingLimits limits = kDefaultLimits;
+  ProcessChoice process;          // what those limits are for, and where they came from
   std::filesystem::path spheres;  // of the method `given`
   AdaptiveOptions stop;           // when the adaptive method stops; the hexagonal one has no such choice
   DeviceRequest device;

@@ -118,6 +118,7 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   JobLog log(monitor);
   PackReport report;
   report.method = options.packing.method;
+  report.process = options.packing.process;
   report.output = options.output;
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   AnnouncedFile table(options.output, log);

@@ -63,6 +63,7 @@ struct OutputFacts {
 struct HollowReport {
   InputFacts input;
   PackingLimits limits;
+  ProcessChoice process;
   PackingMethod method = PackingMethod::adaptive;
   PackingStatistics packing_statistics;
   double packing_density = 0;  // volume of the planned balls over that of the packed model
@@ -101,6 +102,7 @@ StageCost total_of(const std::vector<StageCost>& stages);
 struct PackReport {
   InputFacts input;
   std::filesystem::path output;
+  ProcessChoice process;
   PackingMethod method = PackingMethod::adaptive;
   Packing packing;
   double density = 0;

@@ -1,0 +1,25 @@
+#include "cli/numbers.h"
+
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace aerate::cli {
+
+CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit) {
+  const std::string suffix = unit.empty() ? "" : " " + unit;
+  const auto check = [least, most, suffix](const std::string& text) -> std::string {
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
+    if (!is_number) return fmt::format("'{}' is not a number", text);
+    if (number > most) return fmt::format("{}{} is too much (at most {}{})", text, suffix, most, suffix);
+    if (least && number < *least)
+      return fmt::format("{}{} is too little (at least {}{})", text, suffix, *least, suffix);
+    if (!least && number <= 0) return fmt::format("{}{} is too little (more than 0{})", text, suffix, suffix);
+    return {};
+  };
+  return CLI::Validator(check, "");
+}
+
+}  // namespace aerate::cli

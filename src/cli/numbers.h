@@ -1,0 +1,15 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+namespace aerate::cli {
+
+// Accepts a number in [least, most], or in (0, most] with `least` absent; `unit` is for the message.
+CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit);
+
+// No length of a print is beyond this, mm.
+inline constexpr double kLongest = 1e5;
+
+}  // namespace aerate::cli

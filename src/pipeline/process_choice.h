@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/monitor.h"
+#include "core/packing.h"
+#include "printing/processes.h"
+
+namespace aerate {
+
+// A limit that was used, and where it came from.
+struct LimitOrigin {
+  Limit limit = Limit::wall;
+  double value = 0;
+  std::string origin;  // "default of fdm", "command line", "configuration file"
+  std::string source;  // for a default: who says so
+};
+
+// The process a job is for, and where each limit that it is done under came from.
+struct ProcessChoice {
+  Process process;
+  std::vector<LimitOrigin> origins;
+};
+
+// The limits that the origins name.
+PackingLimits packing_limits(const ProcessChoice& choice);
+
+// The built-in process of this name or, for a name that ends in .json or holds a slash, that of the file.
+// Throws UsageError for an unknown name, and what read_process_file throws.
+Process choose_process(const std::string& name_or_file);
+
+// A limit that the user gave instead of the process's.
+struct GivenLimit {
+  Limit limit = Limit::wall;
+  double value = 0;
+  std::string origin;
+};
+
+// Whether limits that the process cannot print are refused.
+enum class ProcessCheck {
+  none,    // the process was not asked for by name
+  strict,  // refuse
+};
+
+// The process's limits with those given in their place. Throws UsageError for limits that contradict each
+// other or that this process cannot print.
+ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>& given, ProcessCheck check);
+
+// What the user should know about closed voids in this process, if anything.
+void warn_of_trapped_material(const Process& process, Monitor& monitor);
+
+// Every built-in process with its figures and their sources, for people.
+std::string processes_in_words();
+
+}  // namespace aerate

@@ -1,0 +1,94 @@
+#include "pipeline/process_file.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/error.h"
+
+namespace aerate {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kHint =
+    "docs/processes.md describes process files; '--process list' names the built-in ones";
+
+Json parse(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw InputError(
+        fmt::format("{}: the process file cannot be read", path.string()),
+        "a process is a built-in name or the path of a .json file; '--process list' names the former");
+  }
+  try {
+    return Json::parse(file);
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: not JSON: {}", path.string(), error.what()), kHint);
+  }
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+  throw UsageError(fmt::format("{}: {}", path.string(), what), kHint);
+}
+
+std::string text_of(const std::filesystem::path& path, const std::string& key, const Json& value) {
+  if (!value.is_string()) refuse(path, fmt::format("\"{}\" is not a text", key));
+  return value.get<std::string>();
+}
+
+SourcedValue figure_of(const std::filesystem::path& path, const std::string& key, const Json& given) {
+  const bool has_source = given.is_object();
+  if (has_source && (!given.contains("value") || given.size() > (given.contains("source") ? 2U : 1U)))
+    refuse(path, fmt::format("\"{}\" must be a number or {{\"value\": .., \"source\": ..}}", key));
+  const Json& number = has_source ? given.at("value") : given;
+  if (!number.is_number()) refuse(path, fmt::format("\"{}\" is not a number", key));
+  const auto value = number.get<double>();
+  constexpr double kMost = 1e5;
+  if (!std::isfinite(value) || value < 0 || value > kMost)
+    refuse(path, fmt::format("\"{}\" is {}, which is out of range", key, value));
+  std::string source = path.filename().string();
+  if (has_source && given.contains("source")) source += ": " + text_of(path, "source", given.at("source"));
+  return {value, source};
+}
+
+Process base_of(const std::filesystem::path& path, const Json& json) {
+  const std::string name = json.contains("base") ? text_of(path, "base", json.at("base")) : "fdm";
+  const Process* base = find_process(name);
+  if (base == nullptr) refuse(path, fmt::format("unknown base \"{}\"", name));
+  Process process = *base;
+  process.name = path.stem().string();
+  for (std::size_t i = 0; i < kLimitCount; ++i)
+    if (process.limits[i])
+      process.limits[i]->source = fmt::format("base {}: {}", name, process.limits[i]->source);
+  return process;
+}
+
+}  // namespace
+
+Process read_process_file(const std::filesystem::path& path) {
+  const Json json = parse(path);
+  if (!json.is_object()) refuse(path, "a process file holds one JSON object");
+  Process process = base_of(path, json);
+  for (const auto& [key, value] : json.items()) {
+    if (const auto limit = limit_named(key)) {
+      process[*limit] = figure_of(path, key, value);
+    } else if (key == "name") {
+      process.name = text_of(path, key, value);
+    } else if (key == "title") {
+      process.title = text_of(path, key, value);
+    } else if (key == "material") {
+      process.material = text_of(path, key, value);
+    } else if (key == "drainage") {
+      if (!value.is_boolean()) refuse(path, "\"drainage\" is neither true nor false");
+      process.drainage = value.get<bool>() ? Drainage::needed : Drainage::not_needed;
+    } else if (key != "base") {
+      refuse(path, fmt::format("unknown key \"{}\"", key));
+    }
+  }
+  return process;
+}
+
+}  // namespace aerate

@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/cli/job.h"
+#include "tests/support/caught.h"
+
+// --process: presets, what overrides them, files of the user's own, and limits that cannot be printed.
+namespace aerate::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kUsage = 2;
+constexpr int kUnreadable = 3;
+
+Mesh cube_of_40() {
+  return make_box({0, 0, 0}, {40, 40, 40});
+}
+
+Json report_of(const Job& job, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = job.hollow(job.input("cube.stl", cube_of_40()), arguments);
+  command.insert(command.end(), {"--json", "-"});
+  const ProcessResult result = run(command);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+Json origin_of(const Json& report, const std::string& limit) {
+  for (const Json& entry : report.at("process").at("limits"))
+    if (entry.at("limit") == limit) return entry;
+  ADD_FAILURE() << "no limit " << limit;
+  return {};
+}
+
+void expect_refused(const Job& job, const std::vector<std::string>& arguments, int exit_code,
+                    const std::vector<std::string>& said) {
+  const ProcessResult result = run(job.hollow(job.input("cube.stl", cube_of_40()), arguments));
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+TEST(ProcessOptions, ListNamesEveryFigureAndItsSource) {
+  for (const char* command : {"hollow", "pack"}) {
+    const ProcessResult result = run({AERATE_EXECUTABLE, command, "--process", "list"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    for (const char* part :
+         {"fdm: ", "sla: ", "sls: ", "metal: ", "escape-hole", "Hubs", "Formlabs", "overhang"})
+      EXPECT_TRUE(contains(result.out, part));
+  }
+}
+
+TEST(ProcessOptions, WithoutAnyItIsFdm) {
+  const Job job;
+  const Json report = report_of(job, {});
+  EXPECT_EQ(report["process"]["name"], "fdm");
+  EXPECT_EQ(report["limits"]["wall_mm"], 1.2);
+  EXPECT_EQ(origin_of(report, "wall")["origin"], "default of fdm");
+  EXPECT_EQ(report["material"]["name"], "PLA");
+  EXPECT_EQ(report["notices"], Json::array());
+}
+
+TEST(ProcessOptions, APresetSetsItsLimitsAndSaysThatSealedVoidsTrapMaterial) {
+  const Job job;
+  const Json report = report_of(job, {"--process", "sla"});
+  EXPECT_EQ(report["limits"]["wall_mm"], 2.0);
+  EXPECT_EQ(report["limits"]["gap_mm"], 1.0);
+  EXPECT_EQ(report["limits"]["min_radius_mm"], 2.5);
+  EXPECT_EQ(report["limits"]["max_radius_mm"], 10.0);
+  EXPECT_GE(report["measured"]["wall_mm"], 2.0);
+  EXPECT_EQ(report["material"]["name"], "resin");
+  EXPECT_TRUE(contains(report["notices"].dump(), "sealed"));
+  EXPECT_TRUE(contains(origin_of(report, "wall")["source"].get<std::string>(), "i.materialise"));
+}
+
+TEST(ProcessOptions, EveryLimitCanBeOverriddenAndTheReportSaysByWhat) {
+  const Job job;
+  const auto config = job.input("aerate.toml", "wall = 3\ngap = 2\n");
+  const Json report = report_of(job, {"--process", "sls", "--config", config, "--wall", "2.5", "--min-radius",
+                                      "3.5", "--material", "PETG"});
+  EXPECT_EQ(report["limits"]["wall_mm"], 2.5);
+  EXPECT_EQ(origin_of(report, "wall")["origin"], "command line");
+  EXPECT_EQ(report["limits"]["gap_mm"], 2.0);
+  EXPECT_EQ(origin_of(report, "gap")["origin"], "configuration file");
+  EXPECT_EQ(origin_of(report, "min-radius")["origin"], "command line");
+  EXPECT_EQ(origin_of(report, "max-radius")["origin"], "default of sls");
+  EXPECT_EQ(report["material"]["name"], "PETG");
+
+  const ProcessResult text = run(job.hollow(job.folder() / "cube.stl", {"--wall", "2.5"}));
+  EXPECT_TRUE(contains(text.out, "wall 2.5 mm (command line)"));
+  EXPECT_TRUE(contains(text.out, "(default of fdm)"));
+}
+
+TEST(ProcessOptions, AProcessOfTheUsersOwn) {
+  const Job job;
+  const auto file = job.input("mine.json",
+                              R"({"base": "sla", "title": "bench-top resin", "wall": 1.5,
+                                  "gap": {"value": 0.8, "source": "data sheet"}, "least-wall": 0.4})");
+  const Json report = report_of(job, {"--process", file});
+  EXPECT_EQ(report["process"]["name"], "mine");
+  EXPECT_EQ(report["limits"]["wall_mm"], 1.5);
+  EXPECT_EQ(report["limits"]["gap_mm"], 0.8);
+  EXPECT_EQ(report["limits"]["max_radius_mm"], 10.0);
+  EXPECT_EQ(origin_of(report, "gap")["source"], "mine.json: data sheet");
+  EXPECT_TRUE(report["process"]["drainage_needed"].get<bool>());
+}
+
+TEST(ProcessOptions, LimitsThatTheProcessCannotPrint) {
+  const Job job;
+  expect_refused(job, {"--process", "fdm", "--gap", "0.3"}, kUsage,
+                 {"gap 0.3 mm", "0.45 mm", "extrusion line"});
+  expect_refused(job, {"--process", "fdm", "--wall", "0.3"}, kUsage, {"wall 0.3 mm", "nozzle"});
+  expect_refused(job, {"--process", "metal", "--wall", "0.3"}, kUsage, {"wall 0.3 mm", "metal"});
+  // Who names no process may want it for something else.
+  EXPECT_EQ(run(job.hollow(job.folder() / "cube.stl", {"--gap", "0.3"})).exit_code, 0);
+}
+
+TEST(ProcessOptions, UnknownProcesses) {
+  const Job job;
+  expect_refused(job, {"--process", "laser"}, kUsage, {"laser", "fdm, sla, sls, metal"});
+  expect_refused(job, {"--process", "./nowhere.json"}, kUnreadable, {"nowhere.json"});
+  expect_refused(job, {"--process", job.input("broken.json", "{\"wall\": ")}, kUnreadable,
+                 {"broken.json", "JSON"});
+}
+
+TEST(ProcessOptions, ContradictionsInAProcessFile) {
+  const Job job;
+  const auto refused = [&](const std::string& content, const std::vector<std::string>& said) {
+    expect_refused(job, {"--process", job.input("own.json", content)}, kUsage, said);
+  };
+  refused(R"({"min-radius": 4, "max-radius": 3})", {"min-radius 4 mm", "max-radius 3 mm"});
+  refused(R"({"wall": 0.2})", {"wall 0.2 mm", "0.4 mm"});
+  refused(R"({"walls": 1})", {"unknown key \"walls\""});
+  refused(R"({"wall": "thick"})", {"\"wall\" is not a number"});
+  refused(R"({"wall": -1})", {"-1", "out of range"});
+  refused(R"({"gap": {"source": "nobody"}})", {"\"gap\""});
+  refused(R"({"base": "laser"})", {"laser"});
+  refused(R"({"drainage": "yes"})", {"drainage"});
+  refused(R"({"material": "unobtainium"})", {"unobtainium"});
+  refused("[1, 2]", {"one JSON object"});
+}
+
+}  // namespace
+}  // namespace aerate::test
