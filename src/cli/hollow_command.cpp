@@ -8,6 +8,7 @@
 
 #include "cli/model_options.h"
 #include "cli/numbers.h"
+#include "cli/print_options.h"
 #include "cli/run_reported.h"
 #include "core/error.h"
 #include "pipeline/hollow.h"
@@ -20,6 +21,7 @@ struct HollowCommand::Options {
       : command(*app.add_subcommand("hollow", "Remove packed spheres from a model and write the result")),
         model(command),
         packing(command, config),
+        print(command),
         run(command) {
     command.add_option("-o,--output", output, "The result: .stl, .obj or .ply (required)")
         ->required()
@@ -89,6 +91,8 @@ struct HollowCommand::Options {
     options.max_hole = max_hole;
     options.material = choose_material(material.empty() ? options.packing.process.process.material : material,
                                        density, price);
+    options.print = print.settings(options.packing);
+    options.heavier = print.heavier();
     if (tolerance > options.packing.limits.min_radius / 2) {
       throw UsageError(fmt::format("--tolerance {} mm is more than half of --min-radius {} mm", tolerance,
                                    options.packing.limits.min_radius),
@@ -100,6 +104,7 @@ struct HollowCommand::Options {
   CLI::App& command;
   ModelOptions model;
   PackingCommandOptions packing;
+  PrintOptions print;
   RunOptions run;
   std::string output;
   std::string spheres;

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "printing/strength.h"
+
 namespace aerate::cli {
 namespace {
 
@@ -113,17 +115,60 @@ std::string dump(const Json& json) {
 }
 
 Json material_of(const HollowReport& report) {
-  const MaterialUse use = material_use(report.material, report.output);
+  const MaterialUse use = material_use(report);
   return {{"name", report.material.name},
           {"density_g_cm3", report.material.density_g_cm3},
           {"price_per_kg", report.material.price_per_kg},
-          {"assumes", "solid material (100 % infill)"},
+          {"assumes", use.predicted ? "the predicted filament" : "solid material (100 % infill)"},
           {"mass_before_g", use.mass_before_g},
           {"mass_after_g", use.mass_after_g},
           {"mass_saved_g", use.mass_before_g - use.mass_after_g},
           {"cost_before", use.cost_before},
           {"cost_after", use.cost_after},
           {"cost_saved", use.cost_before - use.cost_after}};
+}
+
+const char* name_of(TimeChange change) {
+  switch (change) {
+    case TimeChange::shorter:
+      return "shorter";
+    case TimeChange::same:
+      return "same";
+    case TimeChange::longer:
+      return "longer";
+  }
+  return "unknown";
+}
+
+Json in_percent(const std::optional<double>& share) {
+  return share ? Json(100 * *share) : Json(nullptr);
+}
+
+Json json_of(const PrintPrediction& print) {
+  const PrintSettings& settings = print.settings;
+  return {{"described", print.described},
+          {"infill_percent", 100 * settings.infill},
+          {"infill_pattern", settings.pattern == InfillPattern::gyroid ? "gyroid" : "lines"},
+          {"perimeters", settings.perimeters},
+          {"line_width_mm", settings.line_width},
+          {"layer_height_mm", settings.layer_height},
+          {"top_layers", settings.top_layers},
+          {"bottom_layers", settings.bottom_layers},
+          {"filament_before_mm3", print.filament_before_mm3},
+          {"filament_after_mm3", print.filament_after_mm3},
+          {"filament_change_percent", 100 * (print.filament_after_mm3 / print.filament_before_mm3 - 1)},
+          {"break_even_infill_percent", in_percent(print.break_even_infill)},
+          {"break_even_radius_mm", json_of(print.break_even_radius)},
+          {"time_direction", name_of(print.time)}};
+}
+
+Json json_of(const Balance& balance, const OutputFacts& output) {
+  return {{"solid_fraction", output.volume_after / output.volume_before},
+          {"relative_stiffness_upper_bound", balance.stiffness},
+          {"poisson_ratio", kPoissonRatio},
+          {"footing_margin_before_mm", json_of(balance.margin_before)},
+          {"footing_margin_after_mm", json_of(balance.margin_after)},
+          {"tips_over", balance.tips_over()}};
 }
 
 }  // namespace
@@ -159,6 +204,8 @@ std::string to_json(const HollowReport& report) {
                     {"estimated", report.volume_estimated}};
   json["centre_of_mass"] = {{"before_mm", json_of(output.centre_of_mass_before)},
                             {"after_mm", json_of(output.centre_of_mass_after)}};
+  json["strength_and_balance"] = json_of(report.balance, output);
+  json["print"] = report.print ? json_of(*report.print) : Json(nullptr);
   json["material"] = material_of(report);
   add_closing(json, report.stages, report.notices);
   return dump(json);

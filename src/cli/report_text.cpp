@@ -95,6 +95,64 @@ std::string gap_in_words(const Clearances& clearances) {
   return clearances.gap ? fmt::format("{:.3f} mm", *clearances.gap) : std::string("none (one void)");
 }
 
+std::string margin_in_words(double margin) {
+  return fmt::format("{:.1f} mm {} its base", std::abs(margin), margin >= 0 ? "inside" : "OUTSIDE");
+}
+
+void add_balance(Lines& lines, const HollowReport& report) {
+  const OutputFacts& output = report.output;
+  lines.add("strength",
+            "{:.1f} % solid; stiffness at most about {:.0f} % (Hashin-Shtrikman bound, an estimate)",
+            100 * output.volume_after / output.volume_before, 100 * report.balance.stiffness);
+  if (!output.centre_of_mass_before || !output.centre_of_mass_after) return;
+  lines.add("balance", "centre of mass {} -> {} mm, moved by {:.2f} mm", point(*output.centre_of_mass_before),
+            point(*output.centre_of_mass_after),
+            length(*output.centre_of_mass_after - *output.centre_of_mass_before));
+  const Balance& balance = report.balance;
+  if (balance.margin_before && balance.margin_after)
+    lines.add("", "above its footprint {} -> {}{}", margin_in_words(*balance.margin_before),
+              margin_in_words(*balance.margin_after), balance.tips_over() ? ": it tips over" : "");
+}
+
+const char* in_words(TimeChange change) {
+  switch (change) {
+    case TimeChange::shorter:
+      return "takes less time";
+    case TimeChange::same:
+      return "takes about as long";
+    case TimeChange::longer:
+      return "takes longer";
+  }
+  return "";
+}
+
+std::string in_words(const PrintSettings& settings) {
+  return fmt::format("{} perimeters of {:g} mm, {:g} mm layers, {} and {} solid", settings.perimeters,
+                     settings.line_width, settings.layer_height, settings.top_layers, settings.bottom_layers);
+}
+
+// What the figures for material mean, and from which infill on they save.
+void add_print(Lines& lines, const HollowReport& report) {
+  if (!report.print) {
+    lines.add("", "as solid material");
+    return;
+  }
+  const PrintPrediction& print = *report.print;
+  if (print.described) {
+    lines.add("", "as predicted for {:g} % infill, {}; the print {}", 100 * print.settings.infill,
+              in_words(print.settings), in_words(print.time));
+  } else {
+    lines.add("", "as solid material (100 % infill); --infill predicts a sparse print");
+  }
+  if (print.break_even_infill) {
+    lines.add("", "these voids save filament above {:.0f} % infill{}",
+              std::ceil(100 * *print.break_even_infill),
+              print.described ? "" : fmt::format(" ({})", in_words(print.settings)));
+  } else {
+    lines.add("", "these voids save filament at no infill");
+  }
+}
+
 }  // namespace
 
 std::string to_text(const HollowReport& report) {
@@ -112,15 +170,12 @@ std::string to_text(const HollowReport& report) {
             report.volume_estimated ? "; the model's volume is an estimate, since parts overlap" : "");
   lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", output.clearances.wall,
             report.limits.wall, gap_in_words(output.clearances), report.limits.gap);
-  if (output.centre_of_mass_before && output.centre_of_mass_after) {
-    lines.add("balance", "centre of mass {} -> {} mm", point(*output.centre_of_mass_before),
-              point(*output.centre_of_mass_after));
-  }
-  const MaterialUse use = material_use(report.material, output);
+  add_balance(lines, report);
+  const MaterialUse use = material_use(report);
   lines.add("material", "{} {:.1f} -> {:.1f} g, cost {:.2f} -> {:.2f} (at {:g} g/cm3 and {:g} a kg)",
             report.material.name, use.mass_before_g, use.mass_after_g, use.cost_before, use.cost_after,
             report.material.density_g_cm3, report.material.price_per_kg);
-  lines.add("", "as solid material (100 % infill); with sparse infill small voids cost more than they save");
+  add_print(lines, report);
   lines.add("output", "{}: {} ({} outside, {}), {}", output.path.filename().string(),
             count_of(output.triangle_count, "triangle", "triangles"), grouped(output.outer_triangle_count),
             report.surface == OuterSurface::kept ? "kept as they were" : "remeshed",

@@ -13,9 +13,12 @@
 #include "pipeline/job_log.h"
 #include "pipeline/pack.h"
 #include "pipeline/prepare.h"
+#include "pipeline/print_prediction.h"
 #include "pipeline/read_back.h"
 #include "printing/carve.h"
+#include "printing/footing.h"
 #include "printing/remesh.h"
+#include "printing/strength.h"
 #include "printing/write.h"
 
 namespace aerate {
@@ -26,6 +29,24 @@ Solid carve(PreparedModel& model, const VoidPlan& plan, const CarveOptions& opti
   return carve_keeping_surface(model.mesh, plan, options, monitor);
 }
 
+Balance balance_of(const Mesh& outer, const OutputFacts& output) {
+  Balance balance;
+  balance.stiffness = stiffness_upper_bound(output.volume_after / output.volume_before);
+  if (output.centre_of_mass_before)
+    balance.margin_before = footing_margin(outer, *output.centre_of_mass_before);
+  if (output.centre_of_mass_after) balance.margin_after = footing_margin(outer, *output.centre_of_mass_after);
+  return balance;
+}
+
+void warn_of_tipping(const HollowReport& report, Monitor& monitor) {
+  const Vec3d centre = *report.output.centre_of_mass_after;
+  monitor.notice(
+      fmt::format("the model stood, and with these voids it tips over: its centre of mass, now above "
+                  "({:.1f}, {:.1f}) mm, "
+                  "is {:.1f} mm outside of what it stands on",
+                  centre.x, centre.y, -*report.balance.margin_after));
+}
+
 }  // namespace
 
 HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
@@ -34,13 +55,14 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
 
   JobLog log(monitor);
   HollowReport report;
-  report.limits = options.packing.limits;
-  report.process = options.packing.process;
   report.method = options.packing.method;
   report.tolerance_asked = options.tolerance;
   report.max_triangles = options.max_triangles;
   report.material = options.material;
 
+  const PackingRequest request = without_voids_that_cost(options.packing, options, log);
+  report.limits = request.limits;
+  report.process = request.process;
   warn_of_trapped_material(options.packing.process.process, log);
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   // Made before the long stages, so that a place that cannot be written to is found at once.
@@ -54,7 +76,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   report.outer_deviation = model.outer_deviation;
   report.volume_estimated = model.inspection.parts_overlap();
 
-  const Packing packing = pack_model(model, options.packing, log);
+  const Packing packing = pack_model(model, request, log);
   report.packing_statistics = packing.statistics;
   report.packing_device = packing.device;
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
@@ -71,6 +93,11 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   const Solid solid = carve(model, plan, {.tolerance = report.tolerance_used}, log);
   log.check_interrupted();
 
+  if (prints_filament(options)) {
+    log.stage("predict");
+    report.print = predict_print(solid, plan, options, log);
+  }
+
   log.stage("write");
   write_mesh(solid.mesh, pending.file(), format);
   log.check_interrupted();
@@ -82,11 +109,13 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
                                          .model = model.mesh,
                                          .inspection = model.inspection,
                                          .plan = plan,
-                                         .limits = options.packing.limits,
+                                         .limits = request.limits,
                                          .tolerance = report.tolerance_used,
                                          .surface = report.surface});
   report.output.path = options.output;
   report.output.file_bytes = std::filesystem::file_size(pending.file().path());
+  report.balance = balance_of(model.mesh, report.output);
+  if (report.balance.tips_over()) warn_of_tipping(report, log);
   log.check_interrupted();
   pending.file().commit();
 

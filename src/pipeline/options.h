@@ -10,6 +10,7 @@
 #include "mesh/load.h"
 #include "packing/adaptive.h"
 #include "pipeline/process_choice.h"
+#include "printing/print_settings.h"
 
 namespace aerate {
 
@@ -53,6 +54,9 @@ struct PackOptions {
   PackingRequest packing;
 };
 
+// What to do when voids make a print heavier than it would be without them.
+enum class HeavierPrint { refuse, allow };
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
@@ -70,6 +74,10 @@ struct HollowOptions {
   std::optional<double> max_hole;
 
   MaterialFigures material;
+
+  // How filament is printed, if that was said; else figures are for solid material.
+  std::optional<PrintSettings> print;
+  HeavierPrint heavier = HeavierPrint::refuse;
 };
 
 }  // namespace aerate

@@ -4,12 +4,15 @@
 
 namespace aerate {
 
-MaterialUse material_use(const MaterialFigures& material, const OutputFacts& output) {
-  const double grams_per_mm3 = material.density_g_cm3 / 1000;
-  const double price_per_gram = material.price_per_kg / 1000;
+MaterialUse material_use(const HollowReport& report) {
+  const double grams_per_mm3 = report.material.density_g_cm3 / 1000;
+  const double price_per_gram = report.material.price_per_kg / 1000;
   MaterialUse use;
-  use.mass_before_g = output.volume_before * grams_per_mm3;
-  use.mass_after_g = output.volume_after * grams_per_mm3;
+  use.predicted = report.print && report.print->described;
+  use.mass_before_g =
+      (use.predicted ? report.print->filament_before_mm3 : report.output.volume_before) * grams_per_mm3;
+  use.mass_after_g =
+      (use.predicted ? report.print->filament_after_mm3 : report.output.volume_after) * grams_per_mm3;
   use.cost_before = use.mass_before_g * price_per_gram;
   use.cost_after = use.mass_after_g * price_per_gram;
   return use;

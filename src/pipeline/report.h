@@ -11,6 +11,7 @@
 #include "mesh/inspect.h"
 #include "packing/verify.h"
 #include "pipeline/options.h"
+#include "pipeline/print_prediction.h"
 
 namespace aerate {
 
@@ -59,6 +60,17 @@ struct OutputFacts {
   std::optional<Vec3d> centre_of_mass_after;
 };
 
+// How a model stands, and how stiff it is left.
+struct Balance {
+  // How far inside the footprint the centre of mass is, mm (footing_margin): absent for a model that stands
+  // on a tip or an edge, or where there is no centre of mass.
+  std::optional<double> margin_before;
+  std::optional<double> margin_after;
+  double stiffness = 1;  // upper bound of what is left of it, 0..1 (stiffness_upper_bound)
+
+  bool tips_over() const { return margin_before && margin_after && *margin_before >= 0 && *margin_after < 0; }
+};
+
 // Everything that `hollow` tells; rendered as text and as JSON by the command line.
 struct HollowReport {
   InputFacts input;
@@ -82,19 +94,24 @@ struct HollowReport {
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;
 
+  Balance balance;
+  // Absent for a process that prints no filament.
+  std::optional<PrintPrediction> print;
   MaterialFigures material;
   std::vector<StageCost> stages;
   std::vector<std::string> notices;
 };
 
-// Mass and cost of the solid material (100 % infill) before and after.
+// Mass and cost before and after: of the filament that is predicted if the print was described, else of solid
+// material.
 struct MaterialUse {
+  bool predicted = false;
   double mass_before_g = 0;
   double mass_after_g = 0;
   double cost_before = 0;
   double cost_after = 0;
 };
-MaterialUse material_use(const MaterialFigures& material, const OutputFacts& output);
+MaterialUse material_use(const HollowReport& report);
 
 // All stages together: the times added, the largest peak.
 StageCost total_of(const std::vector<StageCost>& stages);

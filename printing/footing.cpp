@@ -1,0 +1,65 @@
+#include "printing/footing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace aerate {
+namespace {
+
+// Half a usual layer: as flat as that, a print sticks to its bed.
+constexpr double kContactHeight = 0.1;
+
+struct Point {
+  double x = 0, y = 0;
+};
+
+// Twice the area of the triangle, positive counter-clockwise.
+double turn(Point a, Point b, Point c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Counter-clockwise, without points along its edges (Andrew's monotone chain).
+std::vector<Point> convex_hull(std::vector<Point> points) {
+  std::sort(points.begin(), points.end(),
+            [](Point a, Point b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::vector<Point> hull;
+  const auto add_chain = [&](auto first, auto last) {
+    const std::size_t start = hull.size();
+    for (; first != last; ++first) {
+      while (hull.size() >= start + 2 && turn(hull[hull.size() - 2], hull.back(), *first) <= 0)
+        hull.pop_back();
+      hull.push_back(*first);
+    }
+    hull.pop_back();  // the next chain begins there
+  };
+  if (points.size() < 3) return {};
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+}  // namespace
+
+std::optional<double> footing_margin(const Mesh& mesh, Vec3d centre_of_mass) {
+  const double ground = static_cast<double>(bounding_box(mesh).lower.z);
+  std::vector<Point> contact;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      const Vec3d p = to_double(mesh.positions[vertex]);
+      if (p.z <= ground + kContactHeight) contact.push_back({p.x, p.y});
+    }
+  }
+  const std::vector<Point> hull = convex_hull(std::move(contact));
+  if (hull.size() < 3) return std::nullopt;
+  const Point mass{centre_of_mass.x, centre_of_mass.y};
+  double margin = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Point a = hull[i], b = hull[(i + 1) % hull.size()];
+    margin = std::min(margin, turn(a, b, mass) / std::hypot(b.x - a.x, b.y - a.y));
+  }
+  return margin;
+}
+
+}  // namespace aerate

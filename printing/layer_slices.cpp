@@ -1,0 +1,179 @@
+#include "printing/layer_slices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace aerate {
+namespace {
+
+// The layers whose middles a triangle crosses: [first, last).
+std::pair<std::size_t, std::size_t> layers_of(const Mesh& mesh, const Triangle& triangle,
+                                              const LayerRaster& raster) {
+  const auto z = [&](int corner) {
+    return static_cast<double>(mesh.positions[triangle[static_cast<std::size_t>(corner)]].z);
+  };
+  const double lowest = std::min({z(0), z(1), z(2)});
+  const double highest = std::max({z(0), z(1), z(2)});
+  const auto layer = [&](double height) {
+    const double at = std::ceil((height - raster.first_z) / raster.layer_height);
+    return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(raster.layer_count)));
+  };
+  // One more on either side: `contour` decides exactly.
+  const std::size_t first = layer(lowest), last = layer(highest);
+  return {first > 0 ? first - 1 : 0, std::min(last + 1, raster.layer_count)};
+}
+
+struct Point {
+  double x, y;
+};
+
+// Where an edge meets the height. From its lower end, so that both triangles at it get the same point.
+Point meet(Vec3d a, Vec3d b, double z) {
+  if (b.z < a.z) std::swap(a, b);
+  const double share = (z - a.z) / (b.z - a.z);
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+}
+
+double squared_distance(double px, double py, double ax, double ay, double bx, double by) {
+  const double ex = bx - ax, ey = by - ay, dx = px - ax, dy = py - ay;
+  const double squared_length = ex * ex + ey * ey;
+  const double t = squared_length > 0 ? std::clamp((dx * ex + dy * ey) / squared_length, 0.0, 1.0) : 0.0;
+  const double rx = dx - t * ex, ry = dy - t * ey;
+  return rx * rx + ry * ry;
+}
+
+// Pixels whose centres lie in [lower, upper] along an axis: [first, last).
+std::pair<std::size_t, std::size_t> pixels_between(double lower, double upper, double origin, double pixel,
+                                                   std::size_t count) {
+  const auto at = [&](double position) {
+    return static_cast<std::size_t>(
+        std::clamp(std::ceil((position - origin) / pixel - 0.5), 0.0, static_cast<double>(count)));
+  };
+  return {at(lower), at(upper)};
+}
+
+}  // namespace
+
+LayerRaster raster_of(const Mesh& mesh, double pixel, double layer_height, double most_pixels) {
+  const Box3f box = bounding_box(mesh);
+  const Vec3d lower = to_double(box.lower), size = to_double(box.upper) - lower;
+  LayerRaster raster;
+  raster.layer_height = layer_height;
+  raster.first_z = lower.z + layer_height / 2;
+  raster.layer_count = static_cast<std::size_t>(std::max(1.0, std::round(size.z / layer_height)));
+  raster.pixel =
+      std::max(pixel, std::sqrt(size.x * size.y * static_cast<double>(raster.layer_count) / most_pixels));
+  raster.count_x = static_cast<std::size_t>(std::ceil(size.x / raster.pixel)) + 2;
+  raster.count_y = static_cast<std::size_t>(std::ceil(size.y / raster.pixel)) + 2;
+  const auto centred = [&](double start, double length, std::size_t count) {
+    return start + length / 2 - static_cast<double>(count) * raster.pixel / 2;
+  };
+  raster.origin_x = centred(lower.x, size.x, raster.count_x);
+  raster.origin_y = centred(lower.y, size.y, raster.count_y);
+  return raster;
+}
+
+LayerSlicer::LayerSlicer(const Mesh& mesh, const LayerRaster& raster) : mesh_(mesh), raster_(raster) {
+  offsets_.assign(raster.layer_count + 1, 0);
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto [first, last] = layers_of(mesh, triangle, raster);
+    for (std::size_t layer = first; layer < last; ++layer) ++offsets_[layer + 1];
+  }
+  for (std::size_t layer = 0; layer < raster.layer_count; ++layer) offsets_[layer + 1] += offsets_[layer];
+  references_.resize(offsets_.back());
+  std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [first, last] = layers_of(mesh, mesh.triangles[i], raster);
+    for (std::size_t layer = first; layer < last; ++layer) references_[next[layer]++] = i;
+  }
+}
+
+LayerSlice LayerSlicer::slice(std::size_t layer, double reach) const {
+  LayerSlice slice;
+  slice.inside.assign(raster_.pixels(), 0);
+  slice.depth.assign(raster_.pixels(), std::numeric_limits<float>::infinity());
+  const std::vector<Segment> segments =
+      contour(raster_.first_z + static_cast<double>(layer) * raster_.layer_height, layer);
+  fill(segments, slice);
+  measure_depth(segments, reach, slice);
+  return slice;
+}
+
+std::vector<LayerSlicer::Segment> LayerSlicer::contour(double z, std::size_t layer) const {
+  std::vector<Segment> segments;
+  for (std::uint32_t i = offsets_[layer]; i < offsets_[layer + 1]; ++i) {
+    const Triangle& triangle = mesh_.triangles[references_[i]];
+    const Vec3d corner[3] = {to_double(mesh_.positions[triangle[0]]), to_double(mesh_.positions[triangle[1]]),
+                             to_double(mesh_.positions[triangle[2]])};
+    // Corners at the height itself count as above it.
+    const bool above[3] = {corner[0].z >= z, corner[1].z >= z, corner[2].z >= z};
+    if (above[0] == above[1] && above[1] == above[2]) continue;
+    Point leaving{}, entering{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      if (above[k] && !above[next]) leaving = meet(corner[k], corner[next], z);
+      if (!above[k] && above[next]) entering = meet(corner[k], corner[next], z);
+    }
+    // Seen from above, an outward triangle has the solid to the left of this.
+    segments.push_back({leaving.x, leaving.y, entering.x, entering.y});
+  }
+  return segments;
+}
+
+void LayerSlicer::fill(const std::vector<Segment>& contour, LayerSlice& slice) const {
+  struct Crossing {
+    double x;
+    int change;
+  };
+  std::vector<std::vector<Crossing>> rows(raster_.count_y);
+  for (const Segment& s : contour) {
+    const auto [first, last] = pixels_between(std::min(s.ay, s.by), std::max(s.ay, s.by), raster_.origin_y,
+                                              raster_.pixel, raster_.count_y);
+    for (std::size_t row = first; row < last; ++row) {
+      const double y = raster_.origin_y + (static_cast<double>(row) + 0.5) * raster_.pixel;
+      const double x = s.ax + (y - s.ay) / (s.by - s.ay) * (s.bx - s.ax);
+      rows[row].push_back({x, s.by > s.ay ? -1 : 1});  // upwards, the solid is on the left: it ends here
+    }
+  }
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    std::sort(rows[row].begin(), rows[row].end(), [](const Crossing& a, const Crossing& b) {
+      return a.x != b.x ? a.x < b.x : a.change > b.change;
+    });
+    int winding = 0;
+    for (std::size_t i = 0; i + 1 < rows[row].size(); ++i) {
+      winding += rows[row][i].change;
+      if (winding < 1) continue;
+      const auto [first, last] = pixels_between(rows[row][i].x, rows[row][i + 1].x, raster_.origin_x,
+                                                raster_.pixel, raster_.count_x);
+      std::fill(slice.inside.begin() + static_cast<std::ptrdiff_t>(row * raster_.count_x + first),
+                slice.inside.begin() + static_cast<std::ptrdiff_t>(row * raster_.count_x + last),
+                std::uint8_t{1});
+    }
+  }
+}
+
+void LayerSlicer::measure_depth(const std::vector<Segment>& contour, double reach, LayerSlice& slice) const {
+  const double reach_squared = reach * reach;
+  for (const Segment& s : contour) {
+    const auto [x0, x1] = pixels_between(std::min(s.ax, s.bx) - reach, std::max(s.ax, s.bx) + reach,
+                                         raster_.origin_x, raster_.pixel, raster_.count_x);
+    const auto [y0, y1] = pixels_between(std::min(s.ay, s.by) - reach, std::max(s.ay, s.by) + reach,
+                                         raster_.origin_y, raster_.pixel, raster_.count_y);
+    for (std::size_t row = y0; row < y1; ++row) {
+      const double y = raster_.origin_y + (static_cast<double>(row) + 0.5) * raster_.pixel;
+      for (std::size_t column = x0; column < x1; ++column) {
+        const std::size_t at = row * raster_.count_x + column;
+        if (slice.inside[at] == 0) continue;
+        const double x = raster_.origin_x + (static_cast<double>(column) + 0.5) * raster_.pixel;
+        const double squared = squared_distance(x, y, s.ax, s.ay, s.bx, s.by);
+        // Squared until the end; see below.
+        if (squared < reach_squared) slice.depth[at] = std::min(slice.depth[at], static_cast<float>(squared));
+      }
+    }
+  }
+  for (float& depth : slice.depth) depth = std::sqrt(depth);
+}
+
+}  // namespace aerate

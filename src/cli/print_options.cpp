@@ -1,0 +1,101 @@
+#include "cli/print_options.h"
+
+#include <charconv>
+#include <fmt/format.h>
+#include <string>
+
+#include "cli/numbers.h"
+#include "core/error.h"
+
+namespace aerate::cli {
+namespace {
+
+constexpr const char* kGroup = "The print, for filament";
+
+// "15" or "15%", as a share.
+std::optional<double> parse_percent(std::string text) {
+  if (text.ends_with('%')) text.pop_back();
+  double percent = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), percent);
+  if (error != std::errc() || end != text.data() + text.size() || !(percent >= 0 && percent <= 100))
+    return {};
+  return percent / 100;
+}
+
+void require_lines_that_fit(const PrintSettings& settings, const PackingLimits& limits) {
+  if (settings.layer_height > settings.line_width) {
+    throw UsageError(fmt::format("--layer-height {:g} mm is more than --line-width {:g} mm",
+                                 settings.layer_height, settings.line_width),
+                     "a line is wider than it is high");
+  }
+  const auto require = [&](double thickness, const char* option) {
+    if (thickness < settings.line_width) {
+      throw UsageError(
+          fmt::format("{} {:g} mm is less than --line-width {:g} mm", option, thickness, settings.line_width),
+          fmt::format("nothing thinner than a line can be printed: give a larger {}", option));
+    }
+  };
+  require(limits.wall, "--wall");
+  require(limits.gap, "--gap");
+}
+
+}  // namespace
+
+PrintOptions::PrintOptions(CLI::App& command) {
+  const auto is_percent = [](const std::string& text) {
+    return parse_percent(text) ? std::string() : fmt::format("'{}' is not a share from 0% to 100%", text);
+  };
+  infill_option_ =
+      command
+          .add_option(
+              "--infill", infill_,
+              "Infill of the print; with it filament is predicted, voids that would cost more than they save "
+              "are left out, and a print that would become heavier is refused. Without it figures are for "
+              "solid material")
+          ->check(CLI::Validator(is_percent, ""))
+          ->type_name("PERCENT")
+          ->group(kGroup);
+  const auto add = [&](const char* name, auto& value, const char* what) {
+    CLI::Option* option = command.add_option(name, value, what)->group(kGroup)->capture_default_str();
+    option->needs(infill_option_);
+    return option;
+  };
+  add("--infill-pattern", pattern_, "gyroid, or lines for any pattern of straight lines")
+      ->check(CLI::IsMember({"gyroid", "lines"}))
+      ->type_name("PATTERN");
+  add("--perimeters", settings_.perimeters, "Lines along each contour")
+      ->check(CLI::Range(0, 100))
+      ->type_name("N");
+  add("--line-width", settings_.line_width, "Width of an extruded line")
+      ->check(number_between({}, 10, "mm"))
+      ->type_name("MM");
+  add("--layer-height", settings_.layer_height, "Height of a layer")
+      ->check(number_between({}, 10, "mm"))
+      ->type_name("MM");
+  add("--top-layers", settings_.top_layers, "Solid layers under surfaces that look up")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N");
+  add("--bottom-layers", settings_.bottom_layers, "Solid layers over surfaces that look down")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N");
+  command.add_flag("--force", force_, "Write the model even if its print becomes heavier")
+      ->needs(infill_option_)
+      ->group(kGroup);
+}
+
+std::optional<PrintSettings> PrintOptions::settings(const PackingRequest& packing) const {
+  if (infill_option_->count() == 0) return std::nullopt;
+  const Process& process = packing.process.process;
+  if (process.drainage == Drainage::needed) {
+    throw UsageError(fmt::format("--infill {} contradicts --process {}, which prints solid material", infill_,
+                                 process.name),
+                     "leave one of them out");
+  }
+  PrintSettings settings = settings_;
+  settings.infill = parse_percent(infill_).value();
+  settings.pattern = pattern_ == "gyroid" ? InfillPattern::gyroid : InfillPattern::lines;
+  require_lines_that_fit(settings, packing.limits);
+  return settings;
+}
+
+}  // namespace aerate::cli

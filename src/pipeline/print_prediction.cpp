@@ -1,0 +1,118 @@
+#include "pipeline/print_prediction.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <string>
+
+#include "core/error.h"
+
+namespace aerate {
+namespace {
+
+double in_percent(double share) {
+  return 100 * share;
+}
+
+// To a hundredth of a millimetre, so that the radius which is read is the one that is used.
+double rounded_up(double length) {
+  return std::ceil(length * 100) / 100;
+}
+
+std::string saving_infill(const std::optional<double>& infill) {
+  if (!infill) return "they save at no infill";
+  return fmt::format("they save above {:.0f} % infill", std::ceil(in_percent(*infill)));
+}
+
+constexpr const char* kOtherWays =
+    "print the voids as modifier volumes of 0 % infill instead, which have no walls, or give --force";
+
+[[noreturn]] void refuse_all(const PackingLimits& limits, const PrintSettings& settings,
+                             const std::optional<double>& least_radius) {
+  const std::string above =
+      least_radius ? fmt::format("above a radius of {:.1f} mm", *least_radius) : std::string("at no radius");
+  throw NothingToRemoveError(
+      fmt::format(
+          "nothing would be saved: at {:g} % infill a void takes less filament than it saves only {}, since "
+          "walls and skins are printed round it, and the largest allowed is {:g} mm (--max-radius)",
+          in_percent(settings.infill), above, limits.max_radius),
+      fmt::format("voids of {:g} mm: {}; {}", limits.max_radius,
+                  saving_infill(break_even_infill(limits.max_radius, settings)), kOtherWays));
+}
+
+// The outer surface of a solid, alone.
+Mesh outer_surface(const Solid& solid) {
+  Mesh outer;
+  outer.positions.assign(
+      solid.mesh.positions.begin(),
+      solid.mesh.positions.begin() + static_cast<std::ptrdiff_t>(solid.outer_vertex_count));
+  outer.triangles.assign(
+      solid.mesh.triangles.begin(),
+      solid.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(solid.outer_triangle_count));
+  return outer;
+}
+
+std::string change_in_words(const PrintPrediction& prediction) {
+  return fmt::format("{:.2f} instead of {:.2f} cm3 of filament ({:+.1f} %) at {:g} % infill",
+                     prediction.filament_after_mm3 / 1000, prediction.filament_before_mm3 / 1000,
+                     in_percent(prediction.filament_after_mm3 / prediction.filament_before_mm3 - 1),
+                     in_percent(prediction.settings.infill));
+}
+
+}  // namespace
+
+bool prints_filament(const HollowOptions& options) {
+  return options.packing.process.process.drainage == Drainage::not_needed;
+}
+
+PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptions& options,
+                                       Monitor& monitor) {
+  if (!options.print || options.heavier == HeavierPrint::allow || request.method == PackingMethod::given)
+    return request;
+  const PrintSettings& settings = *options.print;
+  const auto least_radius = break_even_radius(settings);
+  if (!least_radius || *least_radius > request.limits.max_radius)
+    refuse_all(request.limits, settings, least_radius);
+  const double raised = rounded_up(*least_radius);
+  if (raised <= request.limits.min_radius) return request;
+  monitor.notice(fmt::format(
+      "at {:g} % infill a void saves filament only above a radius of {:g} mm: smaller ones are not "
+      "made",
+      in_percent(settings.infill), raised));
+  request.limits.min_radius = std::min(raised, request.limits.max_radius);
+  for (LimitOrigin& origin : request.process.origins) {
+    if (origin.limit != Limit::min_radius) continue;
+    origin.value = request.limits.min_radius;
+    origin.origin = fmt::format("break-even at {:g} % infill", in_percent(settings.infill));
+    origin.source = "docs/economics.md";
+  }
+  return request;
+}
+
+PrintPrediction predict_print(const Solid& solid, const VoidPlan& plan, const HollowOptions& options,
+                              Monitor& monitor) {
+  PrintPrediction prediction;
+  prediction.described = options.print.has_value();
+  prediction.settings = options.print.value_or(PrintSettings{});
+  const PrintSettings& settings = prediction.settings;
+  const FilamentUse whole = filament_use(outer_surface(solid), settings);
+  monitor.check_interrupted();
+  const FilamentUse hollow = filament_use(solid.mesh, settings);
+  monitor.check_interrupted();
+  prediction.filament_before_mm3 = whole.volume_mm3(settings);
+  prediction.filament_after_mm3 = hollow.volume_mm3(settings);
+  prediction.break_even_infill = break_even_infill(hollow - whole, settings);
+  prediction.break_even_radius = break_even_radius(settings);
+  prediction.time = time_change(whole, hollow, plan.spheres, settings);
+
+  if (prediction.described && prediction.heavier()) {
+    if (options.heavier == HeavierPrint::refuse) {
+      throw NothingToRemoveError(
+          "the print would become heavier: " + change_in_words(prediction),
+          fmt::format("{}; {}", saving_infill(prediction.break_even_infill), kOtherWays));
+    }
+    monitor.notice("the print becomes heavier: " + change_in_words(prediction));
+  }
+  return prediction;
+}
+
+}  // namespace aerate

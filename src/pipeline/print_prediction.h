@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "core/monitor.h"
+#include "core/solid.h"
+#include "core/void_plan.h"
+#include "pipeline/options.h"
+#include "printing/economics.h"
+
+namespace aerate {
+
+// What voids change about a print of filament, as predicted.
+struct PrintPrediction {
+  PrintSettings settings;
+  bool described =
+      false;  // the print was described; else these are usual settings, and its infill is not known
+  double filament_before_mm3 = 0;
+  double filament_after_mm3 = 0;
+  std::optional<double> break_even_infill;  // these voids save above it (0..1); nothing: never
+  std::optional<double> break_even_radius;  // a void far from others saves above it, mm; nothing: never
+  TimeChange time = TimeChange::same;
+
+  bool heavier() const { return filament_after_mm3 > filament_before_mm3; }
+};
+
+// Whether the filament of this job can be predicted: its process prints filament.
+bool prints_filament(const HollowOptions& options);
+
+// The request with voids left out that would take more filament than they save, each by itself: a larger
+// min_radius, with a notice. Nothing is changed if the print is not described, if it may become heavier, or
+// for given spheres. Throws NothingToRemoveError with the figures if even the largest void would not pay.
+PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptions& options,
+                                       Monitor& monitor);
+
+// Throws NothingToRemoveError if the print is described and would become heavier, unless the options allow
+// it; then it is a notice.
+PrintPrediction predict_print(const Solid& solid, const VoidPlan& plan, const HollowOptions& options,
+                              Monitor& monitor);
+
+}  // namespace aerate

@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/cli/job.h"
+#include "tests/support/caught.h"
+
+// --infill and what describes the print: whether voids pay, and what is refused; and how the result stands.
+namespace aerate::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kUsage = 2;
+constexpr int kNothing = 5;
+
+std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+ProcessResult hollow(const Job& job, const Mesh& model, const std::vector<std::string>& arguments) {
+  return run(job.hollow(job.input("model.stl", model), arguments));
+}
+
+Json report_of(const Job& job, const Mesh& model, const std::vector<std::string>& arguments) {
+  const ProcessResult result = hollow(job, model, with(arguments, {"--json", "-"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+void expect_refused(const Job& job, const std::vector<std::string>& arguments, int exit_code,
+                    const std::vector<std::string>& said) {
+  const ProcessResult result = hollow(job, block(), arguments);
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
+  const Job job;
+  expect_refused(
+      job, {"--infill", "15%"}, kNothing,
+      {"15 % infill", "above a radius of 19", "3.5 mm (--max-radius)", "% infill", "modifier", "--force"});
+}
+
+TEST(PrintOptions, VoidsThatCostMoreThanTheySaveAreNotMade) {
+  const Job job;
+  const std::vector<std::string> limits{"--max-radius", "12"};
+  const Json report = report_of(job, block(), with(limits, {"--infill", "50"}));
+  const double least = report["limits"]["min_radius_mm"].get<double>();
+  EXPECT_NEAR(least, report["print"]["break_even_radius_mm"].get<double>(), 0.01);
+  EXPECT_GT(least, 3);
+  EXPECT_GT(report["voids"]["min_radius_mm"].get<double>(), least - 0.1);
+  EXPECT_LT(report["print"]["filament_change_percent"].get<double>(), 0);
+  EXPECT_TRUE(contains(report["notices"].dump(), "smaller ones are not made"));
+  EXPECT_TRUE(contains(report["process"].dump(), "break-even at 50 % infill"));
+  // Small voids besides would have cost more.
+  const Json with_small = report_of(job, block(), with(limits, {"--infill", "50", "--force"}));
+  EXPECT_GT(with_small["print"]["filament_after_mm3"], report["print"]["filament_after_mm3"]);
+  EXPECT_GT(with_small["voids"]["count"], report["voids"]["count"]);
+}
+
+TEST(PrintOptions, AHeavierPrintIsWrittenOnlyByForceAndSaysSo) {
+  const Job job;
+  const auto spheres = job.input("spheres.csv", "x,y,z,radius,kind\n15,15,15,3,adaptive\n");
+  const std::vector<std::string> given{"--spheres", spheres, "--infill", "20%"};
+  expect_refused(job, given, kNothing, {"heavier", "cm3 of filament (+", "they save above", "--force"});
+  const Json report = report_of(job, block(), with(given, {"--force"}));
+  EXPECT_GT(report["print"]["filament_change_percent"].get<double>(), 0);
+  EXPECT_TRUE(contains(report["notices"].dump(), "becomes heavier"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{"out.stl"});
+}
+
+TEST(PrintOptions, WithoutInfillTheReportNamesTheInfillAboveWhichTheseVoidsSave) {
+  const Job job;
+  const Json report = report_of(job, block(), {});
+  EXPECT_FALSE(report["print"]["described"].get<bool>());
+  const double infill = report["print"]["break_even_infill_percent"].get<double>();
+  EXPECT_GT(infill, 50);
+  EXPECT_LT(infill, 100);
+  EXPECT_EQ(report["material"]["assumes"], "solid material (100 % infill)");
+  const ProcessResult text = hollow(job, block(), {});
+  EXPECT_TRUE(contains(text.out, "as solid material (100 % infill)"));
+  EXPECT_TRUE(contains(text.out, "these voids save filament above"));
+}
+
+TEST(PrintOptions, FiguresForMaterialAreThoseOfThePrint) {
+  const Job job;
+  const Json report = report_of(
+      job, block(),
+      {"--max-radius", "12", "--infill", "60%", "--perimeters", "3", "--line-width", "0.5", "--layer-height",
+       "0.25", "--top-layers", "3", "--bottom-layers", "2", "--infill-pattern", "lines"});
+  EXPECT_EQ(report["print"]["perimeters"], 3);
+  EXPECT_EQ(report["print"]["infill_pattern"], "lines");
+  EXPECT_NEAR(report["material"]["mass_before_g"].get<double>(),
+              report["print"]["filament_before_mm3"].get<double>() * 1.24e-3, 1e-9);
+  EXPECT_EQ(report["material"]["assumes"], "the predicted filament");
+}
+
+TEST(PrintOptions, WhatPrintsNoFilamentIsNotPredicted) {
+  const Job job;
+  EXPECT_TRUE(report_of(job, make_box({0, 0, 0}, {40, 40, 40}), {"--process", "sls"})["print"].is_null());
+}
+
+TEST(PrintOptions, ThatMakeNoSense) {
+  const Job job;
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::vector<std::string>& said) {
+    expect_refused(job, arguments, kUsage, said);
+  };
+  for (const char* infill : {"-5%", "101", "much", "15%%", "nan", ""})
+    refused({"--infill", infill}, {"--infill"});
+  refused({"--infill", "100%", "--perimeters", "-1"}, {"--perimeters"});
+  refused({"--infill", "100%", "--perimeters", "two"}, {"--perimeters"});
+  refused({"--infill", "100%", "--line-width", "0"}, {"--line-width"});
+  refused({"--infill", "100%", "--layer-height", "0.6"}, {"--layer-height 0.6 mm", "--line-width 0.45 mm"});
+  refused({"--infill", "100%", "--gap", "0.3"}, {"--gap 0.3 mm", "--line-width 0.45 mm"});
+  refused({"--infill", "100%", "--wall", "0.3"}, {"--wall 0.3 mm", "--line-width 0.45 mm"});
+  refused({"--infill", "100%", "--infill-pattern", "stars"}, {"stars"});
+  refused({"--infill", "15%", "--process", "sla"}, {"--infill 15%", "--process sla"});
+  refused({"--perimeters", "3"}, {"--perimeters", "--infill"});
+  refused({"--force"}, {"--force", "--infill"});
+}
+
+// A block on a narrow foot that holds up a long thin arm: only the block takes voids.
+Mesh counterweight() {
+  const std::vector<std::pair<float, float>> outline{{0, 0},  {10, 0},  {10, 5},   {120, 5}, {120, 8},
+                                                     {10, 8}, {10, 35}, {-30, 35}, {-30, 5}, {0, 5}};
+  const std::vector<Triangle> caps{{0, 1, 2}, {0, 2, 9}, {2, 3, 4}, {2, 4, 5},
+                                   {9, 2, 5}, {9, 5, 8}, {5, 6, 8}, {6, 7, 8}};
+  Mesh mesh;
+  const auto count = static_cast<std::uint32_t>(outline.size());
+  for (const float y : {0.0F, 30.0F})
+    for (const auto& [x, z] : outline) mesh.positions.push_back({x, y, z});
+  for (const Triangle& t : caps) {
+    mesh.triangles.push_back(t);
+    mesh.triangles.push_back({t[0] + count, t[2] + count, t[1] + count});
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t next = (i + 1) % count;
+    mesh.triangles.push_back({i, i + count, next});
+    mesh.triangles.push_back({next, i + count, next + count});
+  }
+  return mesh;
+}
+
+TEST(PrintOptions, AModelThatTipsOverByItsVoidsIsReported) {
+  const Job job;
+  const Json report = report_of(job, counterweight(), {"--max-radius", "14"});
+  const Json& balance = report["strength_and_balance"];
+  EXPECT_GT(balance["footing_margin_before_mm"].get<double>(), 0);
+  EXPECT_LT(balance["footing_margin_after_mm"].get<double>(), 0);
+  EXPECT_TRUE(balance["tips_over"].get<bool>());
+  EXPECT_TRUE(contains(report["notices"].dump(), "it tips over"));
+  EXPECT_LT(balance["relative_stiffness_upper_bound"].get<double>(), balance["solid_fraction"].get<double>());
+
+  const Json stands = report_of(job, block(), {});
+  EXPECT_FALSE(stands["strength_and_balance"]["tips_over"].get<bool>());
+  EXPECT_NEAR(stands["strength_and_balance"]["footing_margin_before_mm"].get<double>(), 15, 1e-6);
+}
+
+}  // namespace
+}  // namespace aerate::test
