@@ -33,7 +33,7 @@ constexpr const char* kFooter =
     "    2  usage: options, a configuration file, limits that contradict each other, more than memory holds\n"
     "    3  unreadable input: missing, empty, truncated or not what it claims to be\n"
     "    4  a mesh that cannot be used: open, flat, without an inside\n"
-    "    5  nothing to remove under these limits\n"
+    "    5  nothing to remove under these limits, or nothing saved by it\n"
     "  130  interrupted; no output was written";
 
 // CLI11's message as an error of the program's own.
