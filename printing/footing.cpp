@@ -8,8 +8,10 @@
 namespace aerate {
 namespace {
 
-// Half a usual layer: as flat as that, a print sticks to its bed.
-constexpr double kContactHeight = 0.1;
+// Scanned bases are never quite flat: what is no higher than this share of the model's height carries it, and
+// at least half a usual layer, mm.
+constexpr double kContactShare = 0.01;
+constexpr double kLeastContact = 0.1;
 
 struct Point {
   double x = 0, y = 0;
@@ -43,12 +45,15 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
 }  // namespace
 
 std::optional<double> footing_margin(const Mesh& mesh, Vec3d centre_of_mass) {
-  const double ground = static_cast<double>(bounding_box(mesh).lower.z);
+  const Box3f box = bounding_box(mesh);
+  const double ground = static_cast<double>(box.lower.z);
+  const double contact_height =
+      std::max(kLeastContact, kContactShare * (static_cast<double>(box.upper.z) - ground));
   std::vector<Point> contact;
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
       const Vec3d p = to_double(mesh.positions[vertex]);
-      if (p.z <= ground + kContactHeight) contact.push_back({p.x, p.y});
+      if (p.z <= ground + contact_height) contact.push_back({p.x, p.y});
     }
   }
   const std::vector<Point> hull = convex_hull(std::move(contact));

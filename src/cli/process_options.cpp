@@ -37,8 +37,8 @@ ProcessOptions::ProcessOptions(CLI::App& command, const ConfigFile& config)
     given.option =
         command
             .add_option(fmt::format("--{}", name_of(given.limit)), given.value,
-                        fmt::format("{} (default of the process; fdm: {:g})", kWhat[i],
-                                    (*find_process("fdm"))[given.limit]->value))
+                        fmt::format("{} (default of the process, here of fdm)", kWhat[i]))
+            ->default_str(fmt::format("{:g}", (*find_process("fdm"))[given.limit]->value))
             ->check(number_between(may_be_zero ? std::optional(0.0) : std::nullopt, kLongest, "mm"))
             ->type_name("MM");
   }

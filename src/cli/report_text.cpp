@@ -96,7 +96,8 @@ std::string gap_in_words(const Clearances& clearances) {
 }
 
 std::string margin_in_words(double margin) {
-  return fmt::format("{:.1f} mm {} its base", std::abs(margin), margin >= 0 ? "inside" : "OUTSIDE");
+  return fmt::format("{:.1f} mm {} the edge of its base", std::abs(margin),
+                     margin >= 0 ? "inside" : "outside");
 }
 
 void add_balance(Lines& lines, const HollowReport& report) {
@@ -109,9 +110,12 @@ void add_balance(Lines& lines, const HollowReport& report) {
             point(*output.centre_of_mass_after),
             length(*output.centre_of_mass_after - *output.centre_of_mass_before));
   const Balance& balance = report.balance;
-  if (balance.margin_before && balance.margin_after)
-    lines.add("", "above its footprint {} -> {}{}", margin_in_words(*balance.margin_before),
+  if (!balance.margin_before || !balance.margin_after || *balance.margin_before < 0) {
+    lines.add("", "does not stand by itself as it lies, with or without voids");
+  } else {
+    lines.add("", "stands {} -> {}{}", margin_in_words(*balance.margin_before),
               margin_in_words(*balance.margin_after), balance.tips_over() ? ": it tips over" : "");
+  }
 }
 
 const char* in_words(TimeChange change) {

@@ -19,8 +19,8 @@ double rounded_up(double length) {
 }
 
 std::string saving_infill(const std::optional<double>& infill) {
-  if (!infill) return "they save at no infill";
-  return fmt::format("they save above {:.0f} % infill", std::ceil(in_percent(*infill)));
+  if (!infill) return "save at no infill";
+  return fmt::format("save above {:.0f} % infill", std::ceil(in_percent(*infill)));
 }
 
 constexpr const char* kOtherWays =
@@ -35,7 +35,7 @@ constexpr const char* kOtherWays =
           "nothing would be saved: at {:g} % infill a void takes less filament than it saves only {}, since "
           "walls and skins are printed round it, and the largest allowed is {:g} mm (--max-radius)",
           in_percent(settings.infill), above, limits.max_radius),
-      fmt::format("voids of {:g} mm: {}; {}", limits.max_radius,
+      fmt::format("voids of {:g} mm {}; {}", limits.max_radius,
                   saving_infill(break_even_infill(limits.max_radius, settings)), kOtherWays));
 }
 
@@ -108,7 +108,7 @@ PrintPrediction predict_print(const Solid& solid, const VoidPlan& plan, const Ho
     if (options.heavier == HeavierPrint::refuse) {
       throw NothingToRemoveError(
           "the print would become heavier: " + change_in_words(prediction),
-          fmt::format("{}; {}", saving_infill(prediction.break_even_infill), kOtherWays));
+          fmt::format("these voids {}; {}", saving_infill(prediction.break_even_infill), kOtherWays));
     }
     monitor.notice("the print becomes heavier: " + change_in_words(prediction));
   }

@@ -66,7 +66,8 @@ TEST(PrintOptions, AHeavierPrintIsWrittenOnlyByForceAndSaysSo) {
   const Job job;
   const auto spheres = job.input("spheres.csv", "x,y,z,radius,kind\n15,15,15,3,adaptive\n");
   const std::vector<std::string> given{"--spheres", spheres, "--infill", "20%"};
-  expect_refused(job, given, kNothing, {"heavier", "cm3 of filament (+", "they save above", "--force"});
+  expect_refused(job, given, kNothing,
+                 {"heavier", "cm3 of filament (+", "these voids save above", "--force"});
   const Json report = report_of(job, block(), with(given, {"--force"}));
   EXPECT_GT(report["print"]["filament_change_percent"].get<double>(), 0);
   EXPECT_TRUE(contains(report["notices"].dump(), "becomes heavier"));

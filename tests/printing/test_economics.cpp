@@ -99,8 +99,8 @@ TEST(Economics, ALoneVoidCostsTheSameByItsFormulaAndOnTheRaster) {
 
 TEST(Economics, WhatNeighboursShareIsCountedOnce) {
   const PrintSettings sparse = with_infill(0.15);
-  const double alone = use_of_voids(4, 2, 30).volume_mm3(sparse);
-  const double together = use_of_voids(4, 2, 8.9F).volume_mm3(sparse);
+  const double alone = use_of_voids(2, 4, 30).volume_mm3(sparse);
+  const double together = use_of_voids(2, 4, 4.9F).volume_mm3(sparse);
   EXPECT_GT(together, 0);
   EXPECT_LT(together, 0.95 * alone);
 }

@@ -13,8 +13,8 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 
-// Whether the filament that a report predicts is what a slicer then uses. A small part of what bench/economics_table does for
-// docs/economics.md.
+// Whether the filament that a report predicts is what a slicer then uses. A small part of what
+// bench/economics_table does for docs/economics.md.
 namespace aerate::test {
 namespace {
 
@@ -25,13 +25,40 @@ constexpr const char* kSlicer = "prusa-slicer";
 double filament_mm3(const std::filesystem::path& model, const std::string& infill,
                     const std::filesystem::path& folder) {
   const auto gcode = folder / "print.gcode";
-  const ProcessResult result =
-      run({kSlicer, "--export-gcode", "--fill-density", infill, "--fill-pattern",
-           infill == "100%" ? "rectilinear" : "gyroid", "--perimeters", "2", "--extrusion-width", "0.45",
-           "--layer-height", "0.2", "--top-solid-layers", "5", "--bottom-solid-layers", "4",
-           "--ensure-vertical-shell-thickness", "--no-thick-bridges", "--no-extra-perimeters", "--first-layer-height",
-           "0.2", "--first-layer-extrusion-width", "0.45", "--skirts", "0", "--infill-anchor", "2.5",
-           "--infill-anchor-max", "12", "--solid-infill-below-area", "0", "--output", gcode, model});
+  const ProcessResult result = run({kSlicer,
+                                    "--export-gcode",
+                                    "--fill-density",
+                                    infill,
+                                    "--fill-pattern",
+                                    infill == "100%" ? "rectilinear" : "gyroid",
+                                    "--perimeters",
+                                    "2",
+                                    "--extrusion-width",
+                                    "0.45",
+                                    "--layer-height",
+                                    "0.2",
+                                    "--top-solid-layers",
+                                    "5",
+                                    "--bottom-solid-layers",
+                                    "4",
+                                    "--ensure-vertical-shell-thickness",
+                                    "--no-thick-bridges",
+                                    "--no-extra-perimeters",
+                                    "--first-layer-height",
+                                    "0.2",
+                                    "--first-layer-extrusion-width",
+                                    "0.45",
+                                    "--skirts",
+                                    "0",
+                                    "--infill-anchor",
+                                    "2.5",
+                                    "--infill-anchor-max",
+                                    "12",
+                                    "--solid-infill-below-area",
+                                    "0",
+                                    "--output",
+                                    gcode,
+                                    model});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   constexpr const char* kLine = "; filament used [mm] = ";
   std::istringstream lines(read_bytes(gcode));
@@ -54,16 +81,17 @@ class EconomicsSlicer : public testing::Test {
     const auto hollow = folder_.path() / "hollow.stl";
     for (const std::string& infill : infills) {
       SCOPED_TRACE(model.filename().string() + " at " + infill);
-      std::vector<std::string> command{AERATE_EXECUTABLE, "hollow", model, "-o", hollow, "--json",
-                                       "-", "--infill", infill, "--force", "--tolerance", "0.1"};
+      std::vector<std::string> command{AERATE_EXECUTABLE, "hollow", model,      "-o",   hollow,
+                                       "--json",          "-",      "--infill", infill, "--force",
+                                       "--tolerance",     "0.1"};
       command.insert(command.end(), limits.begin(), limits.end());
       const ProcessResult result = run(command);
       ASSERT_EQ(result.exit_code, 0) << result.err;
       const double predicted = Json::parse(result.out)["print"]["filament_change_percent"].get<double>();
       const double solid = filament_mm3(model, infill, folder_.path());
       const double change = 100 * (filament_mm3(hollow, infill, folder_.path()) / solid - 1);
-      std::printf("%s at %s: %+.1f %%, predicted %+.1f %%\n", model.filename().c_str(), infill.c_str(), change,
-                  predicted);
+      std::printf("%s at %s: %+.1f %%, predicted %+.1f %%\n", model.filename().c_str(), infill.c_str(),
+                  change, predicted);
       EXPECT_EQ(change > 0, predicted > 0);
       EXPECT_NEAR(predicted, change, std::max(0.1 * std::abs(change), 1.5));
     }
