@@ -21,7 +21,8 @@ TEST(Materials, AnUnknownOneNamesThoseThereAre) {
     FAIL() << "PLA+ is not a preset";
   } catch (const UsageError& error) {
     EXPECT_STREQ(error.what(), "unknown material \"PLA+\"");
-    EXPECT_EQ(error.hint(), "use one of PLA, PETG, ABS, resin, PA12, or give --density and --price");
+    EXPECT_EQ(error.hint(),
+              "use one of PLA, PETG, ABS, resin, PA12, AlSi10Mg, or give --density and --price");
   }
   EXPECT_THROW(find_material(""), UsageError);
   EXPECT_THROW(find_material("PL"), UsageError);
