@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <tbb/parallel_scan.h>
 
 namespace aerate::kernels {
 namespace {
@@ -16,38 +15,15 @@ struct Pair {
   }
 };
 
-template <typename Offset>
-std::uint64_t serial_scan(View<const std::uint32_t> in, View<Offset> out) {
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < in.size; ++i) {
-    out[i] = static_cast<Offset>(sum);
-    sum += in[i];
-  }
-  return sum;
-}
-
-template <typename Offset>
-std::uint64_t parallel_scan(View<const std::uint32_t> in, View<Offset> out) {
-  return tbb::parallel_scan(
-      tbb::blocked_range<std::size_t>(0, in.size, std::size_t{1} << 14), std::uint64_t{0},
-      [in, out](const tbb::blocked_range<std::size_t>& range, std::uint64_t sum, bool is_final) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          if (is_final) out[i] = static_cast<Offset>(sum);
-          sum += in[i];
-        }
-        return sum;
-      },
-      std::plus<std::uint64_t>());
-}
-
 }  // namespace
 
 std::uint64_t SerialExecutor::exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const {
-  return serial_scan(in, out);
-}
-
-std::uint64_t SerialExecutor::exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const {
-  return serial_scan(in, out);
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < in.size; ++i) {
+    out[i] = static_cast<std::uint32_t>(sum);
+    sum += in[i];
+  }
+  return sum;
 }
 
 void SerialExecutor::sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const {
@@ -61,11 +37,16 @@ void SerialExecutor::sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> va
 }
 
 std::uint64_t TbbExecutor::exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const {
-  return parallel_scan(in, out);
-}
-
-std::uint64_t TbbExecutor::exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const {
-  return parallel_scan(in, out);
+  return tbb::parallel_scan(
+      tbb::blocked_range<std::size_t>(0, in.size, std::size_t{1} << 14), std::uint64_t{0},
+      [in, out](const tbb::blocked_range<std::size_t>& range, std::uint64_t sum, bool is_final) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          if (is_final) out[i] = static_cast<std::uint32_t>(sum);
+          sum += in[i];
+        }
+        return sum;
+      },
+      std::plus<std::uint64_t>());
 }
 
 void TbbExecutor::sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const {

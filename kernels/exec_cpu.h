@@ -8,10 +8,12 @@
 #include <span>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_scan.h>
 #include <tbb/parallel_sort.h>
 #include <utility>
 #include <vector>
 
+#include "kernels/tally.h"
 #include "kernels/view.h"
 
 // The executors that run kernels on the CPU. An executor is a value with
@@ -20,10 +22,16 @@
 //   Buffer<T> upload(span<const T>)  copy from the host
 //   vector<T> download(View<T>)      copy to the host
 //   for_each_index(n, f)             f(i) for every i < n, in any order; f is a functor of views and values
+//   for_each_step(steps, n, f)       f(step, i) for every i < n, in any order, one step after the other
+//   select(n, tally, emit)           stable partition: emit(i, before) for every i < n, in any order, where
+//                                    `before` is the sum of tally(j) over j < i, which numbers the elements
+//                                    of up to three lists; returns the sum over all. tally may be called
+//                                    several times and must not read what emit writes
 //   exclusive_scan(in, out)          out[i] = in[0] + ... + in[i-1]; returns the sum of all (64 bit, whatever
 //                                    the offsets are); `in` and `out` are different memory
-//   sort_pairs(keys, values)         both by (key, value) ascending
+//   sort_pairs(keys, values)         both by (key, value) ascending; values ascend already
 //   free_bytes()                     what could still be allocated, for those who can do with less
+//   kLeastPiece                      smaller pieces of work than this cost more than they are worth
 //
 // and nothing else, so that one template over the executor is the algorithm for every processor, and every
 // executor gives the same bytes (exec_cuda.h has the CUDA one).
@@ -49,6 +57,8 @@ class HostBuffer {
 // What the CPU executors share: memory is the host's.
 class HostMemory {
  public:
+  static constexpr std::size_t kLeastPiece = 8192;
+
   template <typename T>
   using Buffer = HostBuffer<T>;
 
@@ -81,8 +91,24 @@ class SerialExecutor : public HostMemory {
     for (std::size_t i = 0; i < count; ++i) f(i);
   }
 
+  template <typename F>
+  void for_each_step(unsigned steps, std::size_t count, F f) const {
+    for (unsigned step = 0; step < steps; ++step) {
+      for (std::size_t i = 0; i < count; ++i) f(step, i);
+    }
+  }
+
+  template <typename TallyOf, typename Emit>
+  Tally select(std::size_t count, TallyOf tally, Emit emit) const {
+    Tally sum{};
+    for (std::size_t i = 0; i < count; ++i) {
+      emit(i, sum);
+      sum = sum + tally(i);
+    }
+    return sum;
+  }
+
   std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const;
-  std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const;
   void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
 };
 
@@ -97,12 +123,33 @@ class TbbExecutor : public HostMemory {
                       });
   }
 
+  template <typename F>
+  void for_each_step(unsigned steps, std::size_t count, F f) const {
+    for (unsigned step = 0; step < steps; ++step) {
+      for_each_index(count, [f, step](std::size_t i) { f(step, i); });
+    }
+  }
+
+  template <typename TallyOf, typename Emit>
+  Tally select(std::size_t count, TallyOf tally, Emit emit) const {
+    return tbb::parallel_scan(
+        tbb::blocked_range<std::size_t>(0, count, kSelectGrain), Tally{},
+        [tally, emit](const tbb::blocked_range<std::size_t>& range, Tally sum, bool is_final) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            if (is_final) emit(i, sum);
+            sum = sum + tally(i);
+          }
+          return sum;
+        },
+        [](Tally a, Tally b) { return a + b; });
+  }
+
   std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const;
-  std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const;
   void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
 
  private:
   static constexpr std::size_t kGrain = 64;
+  static constexpr std::size_t kSelectGrain = 4096;
 };
 
 }  // namespace aerate::kernels

@@ -1,10 +1,10 @@
+#include <algorithm>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cxxabi.h>
 #include <string>
 #include <thrust/iterator/tabulate_output_iterator.h>
 
-#include "kernels/atomic.h"
 #include "kernels/exec_cuda.h"
 
 namespace aerate::kernels {
@@ -79,16 +79,21 @@ class Queue {
     properties.location = {cudaMemLocationTypeDevice, device};
     check(cudaMemPoolCreate(&pool_, &properties), "cudaMemPoolCreate");
     std::uint64_t keep_all = ~std::uint64_t{0};
+    const char* call = "cudaMemPoolSetAttribute";
     cudaError_t error = cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep_all);
-    if (error == cudaSuccess) error = cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking);
+    if (error == cudaSuccess) {
+      call = "cudaStreamCreateWithFlags";
+      error = cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking);
+    }
     if (error != cudaSuccess) {
       cudaMemPoolDestroy(pool_);
-      fail(error, "cudaStreamCreateWithFlags");
+      fail(error, call);
     }
   }
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
   ~Queue() {
+    if (scratch_ != nullptr) free(scratch_);
     cudaStreamSynchronize(stream_);
     cudaStreamDestroy(stream_);
     cudaMemPoolDestroy(pool_);
@@ -116,6 +121,16 @@ class Queue {
     if (cudaFreeAsync(memory, stream_) != cudaSuccess) cudaGetLastError();
   }
 
+  void* scratch(std::size_t bytes) {
+    if (bytes <= scratch_bytes_) return scratch_;
+    if (scratch_ != nullptr) free(std::exchange(scratch_, nullptr));
+    scratch_bytes_ = 0;
+    const std::size_t granted = std::max(bytes + bytes / 2, kLeastScratch);
+    scratch_ = allocate(granted);
+    scratch_bytes_ = granted;
+    return scratch_;
+  }
+
   void launched(const std::type_info& functor) {
     const cudaError_t error = cudaGetLastError();
     if (error != cudaSuccess) fail(error, "launch of the kernel " + readable_name(functor));
@@ -141,8 +156,12 @@ class Queue {
   }
 
  private:
+  static constexpr std::size_t kLeastScratch = 4096;
+
   cudaMemPool_t pool_ = nullptr;
   cudaStream_t stream_ = nullptr;
+  void* scratch_ = nullptr;
+  std::size_t scratch_bytes_ = 0;
   const std::type_info* last_kernel_ = nullptr;
 };
 
@@ -171,6 +190,10 @@ CUstream_st* stream(Queue& queue) {
   return queue.stream();
 }
 
+void* scratch(Queue& queue, std::size_t bytes) {
+  return queue.scratch(bytes);
+}
+
 void check_launch(Queue& queue, const std::type_info& functor) {
   queue.launched(functor);
 }
@@ -182,14 +205,13 @@ namespace {
 using cuda_detail::Queue;
 
 // Where a scan writes: sums as offsets, and the sum of all where the host will look for it.
-template <typename Offset>
 struct StoreSums {
   View<const std::uint32_t> in;
-  View<Offset> out;
+  View<std::uint32_t> out;
   std::uint64_t* total;
 
   __device__ void operator()(std::size_t i, std::uint64_t sum) const {
-    out[i] = static_cast<Offset>(sum);
+    out[i] = static_cast<std::uint32_t>(sum);
     if (i + 1 == in.size) *total = sum + in[i];
   }
 };
@@ -203,70 +225,42 @@ void run_cub(const std::shared_ptr<Queue>& queue, const std::string& name, Algor
   queue->check_after_kernels(algorithm(temporary.view().data, bytes), name);
 }
 
-template <typename Offset>
-std::uint64_t scan(const std::shared_ptr<Queue>& queue, View<const std::uint32_t> in, View<Offset> out) {
-  if (in.size == 0) return 0;
-  CudaBuffer<std::uint64_t> total(queue, 1);
-  const auto output = thrust::make_tabulate_output_iterator(StoreSums<Offset>{in, out, total.view().data});
-  run_cub(queue, "cub::DeviceScan", [&](void* temporary, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveScan(temporary, bytes, in.data, output, cuda::std::plus<>{},
-                                          std::uint64_t{0}, in.size, queue->stream());
-  });
-  std::uint64_t sum = 0;
-  cuda_detail::copy_to_host(*queue, &sum, total.view().data, sizeof sum);
-  return sum;
-}
-
-struct CountDescents {
-  View<const std::uint32_t> values;
-  View<std::uint32_t> count;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    if (values[i + 1] < values[i]) atomic_add(count[0], 1);
-  }
-};
-
-// Stable.
-template <typename Key, typename Value>
-void sort_by_key(const std::shared_ptr<Queue>& queue, View<Key> keys, View<Value> values) {
-  CudaBuffer<Key> other_keys(queue, keys.size);
-  CudaBuffer<Value> other_values(queue, values.size);
-  cub::DoubleBuffer<Key> key_buffers(keys.data, other_keys.view().data);
-  cub::DoubleBuffer<Value> value_buffers(values.data, other_values.view().data);
-  run_cub(queue, "cub::DeviceRadixSort", [&](void* temporary, std::size_t& bytes) {
-    return cub::DeviceRadixSort::SortPairs(temporary, bytes, key_buffers, value_buffers, keys.size, 0,
-                                           static_cast<int>(sizeof(Key) * 8), queue->stream());
-  });
-  const auto bring_home = [&](void* home, const void* current, std::size_t bytes) {
-    if (home == current) return;
-    check(cudaMemcpyAsync(home, current, bytes, cudaMemcpyDeviceToDevice, queue->stream()),
-          "cudaMemcpyAsync on the device");
-  };
-  bring_home(keys.data, key_buffers.Current(), keys.size * sizeof(Key));
-  bring_home(values.data, value_buffers.Current(), values.size * sizeof(Value));
-}
-
 }  // namespace
 
 CudaExecutor::CudaExecutor(int device) : queue_(std::make_shared<Queue>(device)) {}
 
 std::uint64_t CudaExecutor::exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const {
-  return scan(queue_, in, out);
+  if (in.size == 0) return 0;
+  CudaBuffer<std::uint64_t> total(queue_, 1);
+  const auto output = thrust::make_tabulate_output_iterator(StoreSums{in, out, total.view().data});
+  run_cub(queue_, "cub::DeviceScan", [&](void* temporary, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveScan(temporary, bytes, in.data, output, cuda::std::plus<>{},
+                                          std::uint64_t{0}, in.size, queue_->stream());
+  });
+  std::uint64_t sum = 0;
+  cuda_detail::copy_to_host(*queue_, &sum, total.view().data, sizeof sum);
+  return sum;
 }
 
-std::uint64_t CudaExecutor::exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const {
-  return scan(queue_, in, out);
-}
-
+// A stable sort by key: values that ascend stay in order where keys are equal.
 void CudaExecutor::sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const {
   if (keys.size < 2) return;
-  // A stable sort by key leaves ties as they are, which is right at once for values that ascend, as indices
-  // mostly do.
-  CudaBuffer<std::uint32_t> descents(queue_, 1);
-  for_each_index(1, SetAll<std::uint32_t>{descents.view(), 0});
-  for_each_index(values.size - 1, CountDescents{values, descents.view()});
-  if (download(View<const std::uint32_t>(descents.view()))[0] != 0) sort_by_key(queue_, values, keys);
-  sort_by_key(queue_, keys, values);
+  CudaBuffer<std::uint64_t> other_keys(queue_, keys.size);
+  CudaBuffer<std::uint32_t> other_values(queue_, values.size);
+  cub::DoubleBuffer<std::uint64_t> key_buffers(keys.data, other_keys.view().data);
+  cub::DoubleBuffer<std::uint32_t> value_buffers(values.data, other_values.view().data);
+  run_cub(queue_, "cub::DeviceRadixSort", [&](void* temporary, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortPairs(temporary, bytes, key_buffers, value_buffers, keys.size, 0, 64,
+                                           queue_->stream());
+  });
+  const auto bring_home = [&](void* home, const void* current, std::size_t bytes) {
+    if (home == current) return;
+    queue_->check_after_kernels(
+        cudaMemcpyAsync(home, current, bytes, cudaMemcpyDeviceToDevice, queue_->stream()),
+        "cudaMemcpyAsync of " + std::to_string(bytes) + " bytes on the device");
+  };
+  bring_home(keys.data, key_buffers.Current(), keys.size * sizeof(std::uint64_t));
+  bring_home(values.data, value_buffers.Current(), values.size * sizeof(std::uint32_t));
 }
 
 std::size_t CudaExecutor::free_bytes() const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kernels/cuda_device.h"
+#include "kernels/tally.h"
 #include "kernels/view.h"
 
 // The executor that runs kernels on a CUDA device: the interface of exec_cpu.h. Host code may include this
@@ -30,6 +31,8 @@ void copy_to_device(Queue& queue, void* to, const void* from, std::size_t bytes)
 // Waits for all work of the queue.
 void copy_to_host(Queue& queue, void* to, const void* from, std::size_t bytes);
 CUstream_st* stream(Queue& queue);
+// Memory for the temporaries of one operation: valid until the next operation that asks for some.
+void* scratch(Queue& queue, std::size_t bytes);
 // After each launch: throws if it failed; its name goes into later errors, since a kernel's own fault only
 // shows in a later call.
 void check_launch(Queue& queue, const std::type_info& functor);
@@ -74,7 +77,7 @@ class CudaBuffer {
 #if defined(__CUDACC__)
 namespace cuda_detail {
 
-// Small blocks, since kernels that handle a triangle in fp64 need up to 170 registers.
+// Small blocks, since kernels that handle a triangle in fp64 need up to 220 registers.
 inline constexpr unsigned kBlock = 128;
 
 // The functor stays where the launch put it, in constant memory; no thread copies it.
@@ -82,6 +85,106 @@ template <typename F>
 __global__ void __launch_bounds__(kBlock, 1) run(const __grid_constant__ F f, std::size_t count) {
   const std::size_t i = static_cast<std::size_t>(blockIdx.x) * kBlock + threadIdx.x;
   if (i < count) f(i);
+}
+
+template <typename F>
+__global__ void __launch_bounds__(kBlock, 1)
+    run_step(const __grid_constant__ F f, unsigned step, std::size_t count) {
+  const std::size_t i = static_cast<std::size_t>(blockIdx.x) * kBlock + threadIdx.x;
+  if (i < count) f(step, i);
+}
+
+// All steps in one block, whose barrier parts them.
+inline constexpr unsigned kStepBlock = 256;
+inline constexpr std::size_t kMostInOneBlock = 4096;
+
+template <typename F>
+__global__ void __launch_bounds__(kStepBlock, 1)
+    run_all_steps(const __grid_constant__ F f, unsigned steps, std::size_t count) {
+  for (unsigned step = 0; step < steps; ++step) {
+    for (std::size_t i = threadIdx.x; i < count; i += kStepBlock) f(step, i);
+    __syncthreads();
+  }
+}
+
+// A block of `select` handles this many elements.
+inline constexpr unsigned kSelectBlock = 256;
+inline constexpr std::size_t kSelectTile = 8 * std::size_t{kSelectBlock};
+
+// Sums within a block by shuffles. Ours and not cub::BlockScan, whose headers double the time that every file
+// with a kernel takes to compile.
+struct TallySums {
+  Tally before;  // of the threads before this one
+  Tally all;     // of the whole block
+};
+
+__device__ inline TallySums sum_over_block(Tally own) {
+  constexpr unsigned kAll = 0xffffffffu, kWarp = 32;
+  __shared__ Tally warp_sums[kSelectBlock / kWarp];
+  const unsigned lane = threadIdx.x % kWarp, warp = threadIdx.x / kWarp;
+  Tally upto = own;
+  for (unsigned distance = 1; distance < kWarp; distance *= 2) {
+    const Tally left{__shfl_up_sync(kAll, upto.first, distance), __shfl_up_sync(kAll, upto.second, distance),
+                     __shfl_up_sync(kAll, upto.third, distance)};
+    if (lane >= distance) upto = upto + left;
+  }
+  if (lane == kWarp - 1) warp_sums[warp] = upto;
+  __syncthreads();
+  TallySums sums{};
+  for (unsigned k = 0; k < kSelectBlock / kWarp; ++k) {
+    if (k < warp) sums.before = sums.before + warp_sums[k];
+    sums.all = sums.all + warp_sums[k];
+  }
+  __syncthreads();  // the next call writes to warp_sums
+  const Tally in_warp{upto.first - own.first, upto.second - own.second, upto.third - own.third};
+  sums.before = sums.before + in_warp;
+  return sums;
+}
+
+template <typename TallyOf>
+__global__ void __launch_bounds__(kSelectBlock, 1)
+    select_sums(const __grid_constant__ TallyOf tally, std::size_t count, Tally* sums) {
+  const std::size_t first = blockIdx.x * kSelectTile;
+  Tally own{};
+  for (std::size_t k = threadIdx.x; k < kSelectTile && first + k < count; k += kSelectBlock) {
+    own = own + tally(first + k);
+  }
+  const Tally sum = sum_over_block(own).all;
+  if (threadIdx.x == 0) sums[blockIdx.x] = sum;
+}
+
+// Numbers elements from `first` to `last` in order; `sum` is that of those before, then of those up to them.
+template <typename TallyOf, typename Emit>
+__device__ void select_elements(const TallyOf& tally, const Emit& emit, std::size_t first, std::size_t last,
+                                Tally& sum) {
+  for (std::size_t row = first; row < last; row += kSelectBlock) {
+    const std::size_t i = row + threadIdx.x;
+    const TallySums sums = sum_over_block(i < last ? tally(i) : Tally{});
+    if (i < last) emit(i, sum + sums.before);
+    sum = sum + sums.all;
+  }
+}
+
+template <typename TallyOf, typename Emit>
+__global__ void __launch_bounds__(kSelectBlock, 1)
+    select_emit(const __grid_constant__ TallyOf tally, const __grid_constant__ Emit emit, std::size_t count,
+                const Tally* sums, Tally* total) {
+  Tally own{};
+  for (unsigned block = threadIdx.x; block < blockIdx.x; block += kSelectBlock) own = own + sums[block];
+  Tally sum = sum_over_block(own).all;
+  const std::size_t first = blockIdx.x * kSelectTile;
+  const std::size_t last = first + kSelectTile < count ? first + kSelectTile : count;
+  select_elements(tally, emit, first, last, sum);
+  if (threadIdx.x == 0 && blockIdx.x + 1 == gridDim.x) *total = sum;
+}
+
+template <typename TallyOf, typename Emit>
+__global__ void __launch_bounds__(kSelectBlock, 1)
+    select_in_one_block(const __grid_constant__ TallyOf tally, const __grid_constant__ Emit emit,
+                        std::size_t count, Tally* total) {
+  Tally sum{};
+  select_elements(tally, emit, 0, count, sum);
+  if (threadIdx.x == 0) *total = sum;
 }
 
 }  // namespace cuda_detail
@@ -94,6 +197,8 @@ class CudaExecutor {
  public:
   template <typename T>
   using Buffer = CudaBuffer<T>;
+
+  static constexpr std::size_t kLeastPiece = std::size_t{1} << 18;
 
   // device: CUDA's index
   explicit CudaExecutor(int device);
@@ -121,20 +226,59 @@ class CudaExecutor {
   template <typename F>
   void for_each_index(std::size_t count, F f) const {
     if (count == 0) return;
-    const auto blocks = static_cast<unsigned>((count + cuda_detail::kBlock - 1) / cuda_detail::kBlock);
+    const unsigned blocks = blocks_of(count, cuda_detail::kBlock);
     cuda_detail::run<F><<<blocks, cuda_detail::kBlock, 0, cuda_detail::stream(*queue_)>>>(f, count);
     cuda_detail::check_launch(*queue_, typeid(F));
+  }
+
+  // One launch for a few thousand elements, else one for each step.
+  template <typename F>
+  void for_each_step(unsigned steps, std::size_t count, F f) const {
+    using namespace cuda_detail;
+    if (count == 0) return;
+    if (count <= kMostInOneBlock) {
+      run_all_steps<F><<<1, kStepBlock, 0, stream(*queue_)>>>(f, steps, count);
+      check_launch(*queue_, typeid(F));
+      return;
+    }
+    for (unsigned step = 0; step < steps; ++step) {
+      run_step<F><<<blocks_of(count, kBlock), kBlock, 0, stream(*queue_)>>>(f, step, count);
+      check_launch(*queue_, typeid(F));
+    }
+  }
+
+  // One launch for a few thousand elements, else two; then the host waits for the sum.
+  template <typename TallyOf, typename Emit>
+  Tally select(std::size_t count, TallyOf tally, Emit emit) const {
+    using namespace cuda_detail;
+    if (count == 0) return {};
+    const unsigned blocks = count <= kMostInOneBlock ? 1 : blocks_of(count, kSelectTile);
+    auto* const total = static_cast<Tally*>(scratch(*queue_, (blocks + std::size_t{1}) * sizeof(Tally)));
+    if (blocks == 1) {
+      select_in_one_block<<<1, kSelectBlock, 0, stream(*queue_)>>>(tally, emit, count, total);
+    } else {
+      select_sums<<<blocks, kSelectBlock, 0, stream(*queue_)>>>(tally, count, total + 1);
+      check_launch(*queue_, typeid(TallyOf));
+      select_emit<<<blocks, kSelectBlock, 0, stream(*queue_)>>>(tally, emit, count, total + 1, total);
+    }
+    check_launch(*queue_, typeid(Emit));
+    Tally sum{};
+    copy_to_host(*queue_, &sum, total, sizeof sum);
+    return sum;
   }
 #endif
 
   std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const;
-  std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint64_t> out) const;
   void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
 
   // Bytes that could be allocated now; another process may be quicker.
   std::size_t free_bytes() const;
 
  private:
+  static unsigned blocks_of(std::size_t count, std::size_t in_a_block) {
+    return static_cast<unsigned>((count + in_a_block - 1) / in_a_block);
+  }
+
   std::shared_ptr<cuda_detail::Queue> queue_;
 };
 

@@ -13,6 +13,7 @@
 #include "kernels/hexagonal_lattice.h"
 #include "kernels/sphere.h"
 #include "kernels/spheres_61.h"
+#include "kernels/tally.h"
 #include "kernels/winding.h"
 
 // Hexagonal sphere packing after Cuba and Loaiza ("Parallel Sphere Packing for Arbitrary Domains") in its
@@ -128,69 +129,38 @@ struct CountStates {
   }
 };
 
-// Candidates in one of two states, by groups: what is scanned is then small, and what is written stays in
-// order.
-struct Selection {
-  static constexpr std::size_t kGroup = 32;
+AERATE_HD inline bool is_kept(CandidateState state) {
+  return state == CandidateState::kept || state == CandidateState::kept_smaller;
+}
+
+// First list: what is kept; second: lattice spheres that met the surface.
+struct TallyStates {
   View<const CandidateState> states;
-  CandidateState first, second;
+  bool lists_met;
 
-  AERATE_HD bool holds(std::size_t i) const { return states[i] == first || states[i] == second; }
-  AERATE_HD std::size_t group_count() const { return (states.size + kGroup - 1) / kGroup; }
-
-  // Calls visit(i, n) for the group's candidates: i its index, n its number within the group. Returns how
-  // many there are.
-  template <typename Visit>
-  AERATE_HD std::uint32_t for_each_in_group(std::size_t group, Visit visit) const {
-    std::uint32_t count = 0;
-    const std::size_t end = min_of((group + 1) * kGroup, states.size);
-    for (std::size_t i = group * kGroup; i < end; ++i) {
-      if (holds(i)) visit(i, count++);
-    }
-    return count;
+  AERATE_HD Tally operator()(std::size_t i) const {
+    return {is_kept(states[i]) ? 1u : 0u, lists_met && states[i] == CandidateState::near_surface ? 1u : 0u,
+            0u};
   }
 };
 
-struct CountGroup {
-  Selection selection;
-  View<std::uint32_t> counts;
-
-  AERATE_HD void operator()(std::size_t group) const {
-    counts[group] = selection.for_each_in_group(group, [](std::size_t, std::uint32_t) {});
-  }
-};
-
-struct ListGroup {
-  Selection selection;
-  std::uint32_t first_slot;
-  View<const std::uint32_t> offsets;
-  View<std::uint32_t> slots;
-
-  AERATE_HD void operator()(std::size_t group) const {
-    const std::uint32_t offset = offsets[group], first = first_slot;
-    const View<std::uint32_t> to = slots;
-    selection.for_each_in_group(group, [=](std::size_t i, std::uint32_t n) {
-      to[offset + n] = first + static_cast<std::uint32_t>(i);
-    });
-  }
-};
-
-struct EmitGroup {
-  Selection selection;
+struct Emit {
+  View<const CandidateState> states;
   CandidateFamily family;
   std::uint32_t first_slot;
-  View<const std::uint32_t> offsets;
+  bool lists_met;
   View<Sphere> spheres;
+  View<std::uint32_t> met;
 
-  AERATE_HD void operator()(std::size_t group) const {
-    const EmitGroup& self = *this;
-    const std::uint32_t offset = offsets[group];
-    selection.for_each_in_group(group, [&self, offset](std::size_t i, std::uint32_t n) {
-      const Vec3d centre = self.family.position(self.first_slot + static_cast<std::uint32_t>(i));
-      const bool smaller = self.selection.states[i] == CandidateState::kept_smaller;
-      self.spheres[offset + n] = {centre, smaller ? self.family.smaller_radius : self.family.radius,
-                                  smaller ? SphereKind::interstice : self.family.kind};
-    });
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    const std::uint32_t slot = first_slot + static_cast<std::uint32_t>(i);
+    if (is_kept(states[i])) {
+      const bool smaller = states[i] == CandidateState::kept_smaller;
+      spheres[before.first] = {family.position(slot), smaller ? family.smaller_radius : family.radius,
+                               smaller ? SphereKind::interstice : family.kind};
+    } else if (lists_met && states[i] == CandidateState::near_surface) {
+      met[before.second] = slot;
+    }
   }
 };
 
@@ -220,64 +190,95 @@ struct HexagonalResult {
   std::array<std::uint64_t, kCandidateStates> state_counts{};
   std::size_t index_bytes = 0;
   std::size_t slots_at_a_time = 0;
+  std::uint32_t strips = 1;  // of the model, each with an index of its own
 };
 
-// What the job needs at least for the facets and their index, whatever the size of a slab: with one reference
-// for each facet, where there are several.
-inline std::size_t least_index_bytes(const HexagonalInput& input) {
-  const std::size_t facets = input.triangles.size();
-  const auto columns = static_cast<std::size_t>(static_cast<double>(facets) / kFacetsPerColumn);
-  return facets * (sizeof(Facet) + 2 * sizeof(std::uint32_t)) +
-         (columns + 2 * input.grid.cell_count()) * sizeof(std::uint32_t);
-}
+// Memory that one place needs at most while it is worked on: its state, its sphere, and its entry in the list
+// of replaced spheres.
+inline constexpr std::size_t kBytesPerSlot = sizeof(CandidateState) + sizeof(Sphere) + sizeof(std::uint32_t);
 
-// Memory that one place needs at most while it is worked on: its state, its share of two counts for its
-// group, its sphere, and its entry in the list of replaced spheres.
-inline constexpr std::size_t kBytesPerSlot =
-    sizeof(CandidateState) + 1 + sizeof(Sphere) + sizeof(std::uint32_t);
+// Spheres of one kind from consecutive places.
+struct HexagonalPiece {
+  std::uint32_t first_slot;  // of the lattice sphere that was replaced, for replacements
+  std::vector<Sphere> spheres;
+};
+
+// What packers of parts of the lattice have found so far.
+struct HexagonalPieces {
+  std::array<std::vector<HexagonalPiece>, 4> by_kind;  // by SphereKind
+  std::array<std::uint64_t, kCandidateStates> state_counts{};
+  std::size_t index_bytes = 0;
+  std::size_t slots_at_a_time = 0;
+  std::uint32_t strips = 0;
+
+  // In lattice order, in whatever order the parts were packed. Leaves nothing here.
+  HexagonalResult joined() {
+    HexagonalResult result{{}, state_counts, index_bytes, slots_at_a_time, strips};
+    std::size_t total = 0;
+    for (const auto& pieces : by_kind)
+      for (const HexagonalPiece& piece : pieces) total += piece.spheres.size();
+    result.spheres.reserve(total);
+    for (auto& pieces : by_kind) {
+      std::stable_sort(pieces.begin(), pieces.end(), [](const HexagonalPiece& a, const HexagonalPiece& b) {
+        return a.first_slot < b.first_slot;
+      });
+      for (HexagonalPiece& piece : pieces) {
+        result.spheres.insert(result.spheres.end(), piece.spheres.begin(), piece.spheres.end());
+        piece.spheres = {};
+      }
+      pieces.clear();
+    }
+    return result;
+  }
+};
+
+// Rows of lattice cells along y.
+struct LatticeRows {
+  std::uint32_t first, last;
+};
 
 // Packs in slabs of places: all kinds of sphere, one after the other, and the replacements of a slab's
 // lattice spheres at once.
 template <typename Executor>
 class HexagonalPacker {
  public:
+  // winding, grid: may be made of the facets that matter to the rows' places alone
   HexagonalPacker(const Executor& executor, const WindingView& winding, const FacetGridView& grid,
-                  const HexagonalInput& input)
+                  const HexagonalInput& input, HexagonalPieces& pieces)
       : executor_(executor),
         winding_(winding),
         grid_(grid),
         input_(input),
+        pieces_(pieces),
         lattice_(make_hexagonal_lattice(winding.box, input.parameters.lattice_radius)),
         centres_(executor.upload(std::span<const Vec3d>(kCentresOf61InUnitSphere))),
         slab_(slab_for(executor.free_bytes(), input.most_slots)),
         states_(executor.template allocate<CandidateState>(slab_)),
-        counts_(executor.template allocate<std::uint32_t>(groups_of(slab_))),
-        offsets_(executor.template allocate<std::uint32_t>(groups_of(slab_))),
-        state_counters_(executor.template allocate<std::uint64_t>(kCandidateStates)) {}
+        spheres_(executor.template allocate<Sphere>(slab_)),
+        met_(executor.template allocate<std::uint32_t>(slab_)),
+        state_counters_(executor.template allocate<std::uint64_t>(kCandidateStates)) {
+    pieces.slots_at_a_time = slab_;
+  }
 
-  HexagonalResult pack() {
+  // progress: called with the share of these rows that is done
+  void pack(LatticeRows rows, const std::function<void(double)>& progress) {
     executor_.for_each_index(kCandidateStates, SetAll<std::uint64_t>{state_counters_.view(), 0});
-    add_family(family_of(SphereKind::lattice, 1.0), kLatticePerCell);
-    add_family(family_of(SphereKind::interstice, kInterstice), kIntersticesPerCell);
+    const double slots = static_cast<double>(lattice_.cell_count()) * (rows.last - rows.first) /
+                         lattice_.count_y * (kLatticePerCell + kIntersticesPerCell + kTetrahedralPerCell);
+    double done = 0;
+    const auto tick = [&](std::size_t count) {
+      done += static_cast<double>(count);
+      progress(done / slots);
+    };
+    add_family(family_of(SphereKind::lattice, 1.0), kLatticePerCell, rows, tick);
+    add_family(family_of(SphereKind::interstice, kInterstice), kIntersticesPerCell, rows, tick);
     CandidateFamily tetrahedral = family_of(SphereKind::tetrahedral, kTetrahedral);
     tetrahedral.smaller_radius = radius_of(kInterstice);
-    add_family(tetrahedral, kTetrahedralPerCell);
+    add_family(tetrahedral, kTetrahedralPerCell, rows, tick);
 
-    HexagonalResult result;
-    result.slots_at_a_time = slab_;
-    std::size_t total = 0;
-    for (const auto& pieces : pieces_)
-      for (const std::vector<Sphere>& piece : pieces) total += piece.size();
-    result.spheres.reserve(total);
-    for (auto& pieces : pieces_) {
-      for (const std::vector<Sphere>& piece : pieces)
-        result.spheres.insert(result.spheres.end(), piece.begin(), piece.end());
-      pieces.clear();
-    }
     const std::vector<std::uint64_t> counts =
         executor_.download(View<const std::uint64_t>(state_counters_.view()));
-    std::copy(counts.begin(), counts.end(), result.state_counts.begin());
-    return result;
+    for (std::size_t i = 0; i < counts.size(); ++i) pieces_.state_counts[i] += counts[i];
   }
 
  private:
@@ -285,11 +286,8 @@ class HexagonalPacker {
   using Buffer = typename Executor::template Buffer<T>;
 
   static constexpr std::size_t kLeastSlab = 1024;
-  static std::size_t groups_of(std::size_t slots) {
-    return (slots + hexagonal_detail::Selection::kGroup - 1) / hexagonal_detail::Selection::kGroup;
-  }
 
-  // A tenth of the memory is left for what allocators and scans need beside.
+  // A tenth of the memory is left for what allocators and sums need beside.
   static std::size_t slab_for(std::size_t free_bytes, std::size_t most_slots) {
     const std::size_t fitting = max_of(free_bytes / 10 * 9 / kBytesPerSlot, kLeastSlab);
     return max_of(min_of(fitting, most_slots), std::size_t{kReplacements});
@@ -308,95 +306,97 @@ class HexagonalPacker {
     return {lattice_, kind, radius_of(relative), 0.0, centres_.view(), {}};
   }
 
-  void add_family(const CandidateFamily& family, std::size_t slots_per_cell) {
-    const std::size_t slots = lattice_.cell_count() * slots_per_cell;
-    for (std::size_t first = 0; first < slots; first += slab_) {
-      const auto first_slot = static_cast<std::uint32_t>(first);
-      const std::size_t count = min_of(slab_, slots - first);
-      add_slab(family, first_slot, count);
-      if (family.kind == SphereKind::lattice) add_replacements(first_slot, count);
-      done_ += static_cast<double>(count);
-      input_.progress(done_ / slots_in_all());
+  // The rows' places are one run of slots if they are all rows, else one in each layer.
+  template <typename Tick>
+  void add_family(const CandidateFamily& family, std::size_t slots_per_cell, LatticeRows rows, Tick tick) {
+    const std::size_t row = lattice_.count_x * slots_per_cell;
+    const bool is_whole = rows.first == 0 && rows.last == lattice_.count_y;
+    const std::size_t runs = is_whole ? 1 : lattice_.count_z;
+    const std::size_t rows_in_run =
+        is_whole ? std::size_t{lattice_.count_y} * lattice_.count_z : rows.last - rows.first;
+    for (std::size_t run = 0; run < runs; ++run) {
+      const std::size_t begin = (run * lattice_.count_y + rows.first) * row;
+      const std::size_t end = begin + rows_in_run * row;
+      for (std::size_t first = begin; first < end; first += slab_) {
+        const auto first_slot = static_cast<std::uint32_t>(first);
+        const std::size_t count = min_of(slab_, end - first);
+        const std::size_t met = add_slab(family, first_slot, count, first_slot);
+        if (met > 0) add_replacements(met, first_slot);
+        tick(count);
+      }
     }
   }
 
-  double slots_in_all() const {
-    return static_cast<double>(lattice_.cell_count()) *
-           (kLatticePerCell + kIntersticesPerCell + kTetrahedralPerCell);
-  }
-
-  // The spheres of some of a family's places. Leaves their states.
-  void add_slab(const CandidateFamily& family, std::uint32_t first_slot, std::size_t count) {
+  // The spheres of some of a family's places, as a piece. Lists lattice spheres that met the surface, and
+  // returns how many.
+  std::size_t add_slab(const CandidateFamily& family, std::uint32_t first_slot, std::size_t count,
+                       std::uint32_t piece_slot) {
     using namespace hexagonal_detail;
     const View<CandidateState> states{states_.view().data, count};
     executor_.for_each_index(count,
                              Classify{family, first_slot, winding_, grid_, input_.parameters.wall, states});
     executor_.for_each_index(CountStates::threads_for(count), CountStates{states, state_counters_.view()});
-
-    const Selection kept{states, CandidateState::kept, CandidateState::kept_smaller};
-    const std::size_t total = count_groups(kept);
-    if (total == 0) return;
-    if (spheres_.size() < total) {
-      spheres_ = {};
-      spheres_ = executor_.template allocate<Sphere>(total);
+    const bool lists_met = family.kind == SphereKind::lattice;
+    const Tally total =
+        executor_.select(count, TallyStates{states, lists_met},
+                         Emit{states, family, first_slot, lists_met, spheres_.view(), met_.view()});
+    if (total.first > 0) {
+      pieces_.by_kind[static_cast<std::size_t>(family.kind)].push_back(
+          {piece_slot, executor_.download(View<const Sphere>{spheres_.view().data, total.first})});
     }
-    const View<Sphere> spheres{spheres_.view().data, total};
-    executor_.for_each_index(kept.group_count(),
-                             EmitGroup{kept, family, first_slot, offsets_.view(), spheres});
-    pieces_[static_cast<std::size_t>(family.kind)].push_back(executor_.download(View<const Sphere>(spheres)));
+    return total.second;
   }
 
-  // The 61 spheres each in place of those lattice spheres of the last slab that met the surface.
-  void add_replacements(std::uint32_t first_slot, std::size_t count) {
-    using namespace hexagonal_detail;
-    const Selection met{
-        {states_.view().data, count}, CandidateState::near_surface, CandidateState::near_surface};
-    const std::size_t total = count_groups(met);
-    if (total == 0) return;
-    Buffer<std::uint32_t> replaced = executor_.template allocate<std::uint32_t>(total);
-    executor_.for_each_index(met.group_count(), ListGroup{met, first_slot, offsets_.view(), replaced.view()});
+  // The 61 spheres each in place of the lattice spheres listed.
+  void add_replacements(std::size_t met, std::uint32_t piece_slot) {
     CandidateFamily family = family_of(SphereKind::replacement, kRadiusOf61InUnitSphere);
     const std::size_t at_a_time = slab_ / kReplacements;
-    for (std::size_t i = 0; i < total; i += at_a_time) {
-      family.replaced = {replaced.view().data + i, min_of(at_a_time, total - i)};
-      add_slab(family, 0, family.replaced.size * kReplacements);
+    for (std::size_t i = 0; i < met; i += at_a_time) {
+      family.replaced = {met_.view().data + i, min_of(at_a_time, met - i)};
+      add_slab(family, 0, family.replaced.size * kReplacements, piece_slot);
     }
-  }
-
-  // Leaves the groups' offsets.
-  std::size_t count_groups(const hexagonal_detail::Selection& selection) {
-    const std::size_t groups = selection.group_count();
-    const View<std::uint32_t> counts{counts_.view().data, groups};
-    executor_.for_each_index(groups, hexagonal_detail::CountGroup{selection, counts});
-    return executor_.exclusive_scan(counts, View<std::uint32_t>{offsets_.view().data, groups});
   }
 
   const Executor& executor_;
   WindingView winding_;
   FacetGridView grid_;
   const HexagonalInput& input_;
+  HexagonalPieces& pieces_;
   HexagonalLattice lattice_;
   Buffer<Vec3d> centres_;
   std::size_t slab_;
   Buffer<CandidateState> states_;
-  Buffer<std::uint32_t> counts_, offsets_;
-  Buffer<std::uint64_t> state_counters_;
   Buffer<Sphere> spheres_;
-  double done_ = 0;
-  std::array<std::vector<std::vector<Sphere>>, 4> pieces_;  // by SphereKind
+  Buffer<std::uint32_t> met_;
+  Buffer<std::uint64_t> state_counters_;
 };
+
+namespace hexagonal_detail {
+
+template <typename Executor>
+void pack_rows(const Executor& executor, View<const Facet> facets, const Box3d& region, const CellGrid& cells,
+               LatticeRows rows, const HexagonalInput& input, const std::function<void(double)>& progress,
+               HexagonalPieces& pieces) {
+  const auto winding = build_winding_index(executor, facets, input.box, region);
+  const auto grid = build_facet_grid(executor, facets, cells);
+  pieces.index_bytes = max_of(pieces.index_bytes, winding.bytes() + grid.bytes());
+  ++pieces.strips;
+  progress(0);
+  HexagonalPacker<Executor>(executor, winding.view, grid.view, input, pieces).pack(rows, progress);
+}
+
+}  // namespace hexagonal_detail
 
 // The whole job. The triangles go to the executor's memory once, and each sphere comes back once. Fewer than
 // 2^32 places of a kind (the caller's estimate refuses more).
 template <typename Executor>
 HexagonalResult pack_hexagonal(const Executor& executor, const HexagonalInput& input) {
   const auto facets = gather_facets(executor, input.positions, input.triangles);
-  const auto winding = build_winding_index(executor, facets.view(), input.box);
-  const auto grid = build_facet_grid(executor, facets.view(), input.grid);
-  input.progress(0);
-  HexagonalResult result = HexagonalPacker(executor, winding.view, grid.view, input).pack();
-  result.index_bytes = winding.bytes() + grid.bytes();
-  return result;
+  const HexagonalLattice lattice = make_hexagonal_lattice(input.box, input.parameters.lattice_radius);
+  HexagonalPieces pieces;
+  hexagonal_detail::pack_rows(executor, facets.view(), input.box, input.grid, {0, lattice.count_y}, input,
+                              input.progress, pieces);
+  return pieces.joined();
 }
 
 }  // namespace aerate::kernels

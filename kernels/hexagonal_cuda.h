@@ -5,7 +5,8 @@
 namespace aerate::kernels {
 
 // `pack_hexagonal` on a CUDA device, for host code. Works in slabs of places that fit into the device's free
-// memory; throws CudaError (out_of_memory) before anything is computed if the triangles' index does not.
+// memory, and in strips of the model if the index of all triangles does not fit; throws CudaError
+// (out_of_memory) if that is not enough, before anything is computed where it can be foreseen.
 HexagonalResult pack_hexagonal_on_cuda(int device, const HexagonalInput& input);
 
 }  // namespace aerate::kernels

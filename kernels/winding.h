@@ -183,15 +183,17 @@ struct WindingIndex {
 
 // Indexes facets, which must stay alive beside the index. References grow
 // linearly with the facets as long as these are not much longer than wide. O(facets + cells).
+//   box: outside it every winding number is 0
+//   region: where points are going to be asked for; the facets above and below it must be there
 // Throws std::length_error for more than 2^32 - 1 references.
 template <typename Executor>
 WindingIndex<Executor> build_winding_index(const Executor& executor, View<const Facet> facets,
-                                           const Box3d& box) {
+                                           const Box3d& box, const Box3d& region) {
   ColumnGrid grid;
-  grid.origin_x = box.lower.x;
-  grid.origin_y = box.lower.y;
-  const double width = max_of(box.upper.x - box.lower.x, 0.0);
-  const double depth = max_of(box.upper.y - box.lower.y, 0.0);
+  grid.origin_x = region.lower.x;
+  grid.origin_y = region.lower.y;
+  const double width = max_of(region.upper.x - region.lower.x, 0.0);
+  const double depth = max_of(region.upper.y - region.lower.y, 0.0);
   const double longest = max_of(width, depth);
   if (longest > 0) {
     // Columns somewhat wider than a facet: each facet is entered in two or three (bench: at one column for
@@ -219,6 +221,12 @@ WindingIndex<Executor> build_winding_index(const Executor& executor, View<const 
                                                          index.references.view()});
   index.view = {grid, box, facets, index.offsets.view(), index.references.view()};
   return index;
+}
+
+template <typename Executor>
+WindingIndex<Executor> build_winding_index(const Executor& executor, View<const Facet> facets,
+                                           const Box3d& box) {
+  return build_winding_index(executor, facets, box, box);
 }
 
 // Box of facets in host memory; empty (lower > upper) without any.

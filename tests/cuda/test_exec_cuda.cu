@@ -77,13 +77,12 @@ TEST_F(ExecCuda, AddsAtomically) {
   EXPECT_EQ(cuda.download(sum.view())[0], std::accumulate(values.begin(), values.end(), 0u));
 }
 
-template <typename Offset>
 void expect_same_scan(const std::vector<std::uint32_t>& values) {
   const CudaExecutor cuda(0);
   const auto in = cuda.upload(span_of(values));
-  auto out = cuda.allocate<Offset>(values.size());
+  auto out = cuda.allocate<std::uint32_t>(values.size());
   const std::uint64_t sum = cuda.exclusive_scan(in.view(), out.view());
-  std::vector<Offset> expected(values.size());
+  std::vector<std::uint32_t> expected(values.size());
   const std::uint64_t expected_sum =
       SerialExecutor{}.exclusive_scan({values.data(), values.size()}, {expected.data(), expected.size()});
   EXPECT_EQ(sum, expected_sum);
@@ -91,19 +90,98 @@ void expect_same_scan(const std::vector<std::uint32_t>& values) {
 }
 
 TEST_F(ExecCuda, Scans) {
-  for (const std::size_t count : {0, 1, 2, 33, 9000}) {
-    expect_same_scan<std::uint32_t>(random_values(count, 50));
-    expect_same_scan<std::uint64_t>(random_values(count, 50));
-  }
+  for (const std::size_t count : {0, 1, 2, 33, 9000}) expect_same_scan(random_values(count, 50));
 }
 
 // The sum has 64 bits even where the offsets have 32.
 TEST_F(ExecCuda, ScansPast32Bits) {
-  expect_same_scan<std::uint32_t>(std::vector<std::uint32_t>(5000, 0xf0000000u));
-  expect_same_scan<std::uint64_t>(std::vector<std::uint32_t>(5000, 0xf0000000u));
+  expect_same_scan(std::vector<std::uint32_t>(5000, 0xf0000000u));
 }
 
-void expect_same_sort(std::vector<std::uint64_t> keys, std::vector<std::uint32_t> values) {
+// Each step adds what the one before left at the next place: wrong at once if steps overlap.
+struct AddNext {
+  View<std::uint32_t> even, odd;
+
+  AERATE_HD void operator()(unsigned step, std::size_t i) const {
+    const View<std::uint32_t> from = step % 2 == 0 ? even : odd;
+    const View<std::uint32_t> to = step % 2 == 0 ? odd : even;
+    to[i] = from[i] + from[(i + 1) % from.size];
+  }
+};
+
+template <typename Executor>
+std::vector<std::uint32_t> add_next(const Executor& executor, const std::vector<std::uint32_t>& values) {
+  auto even = executor.upload(span_of(values));
+  auto odd = executor.template allocate<std::uint32_t>(values.size());
+  executor.for_each_step(6, values.size(), AddNext{even.view(), odd.view()});
+  return executor.download(View<const std::uint32_t>(even.view()));
+}
+
+// In one block and in several.
+TEST_F(ExecCuda, RunsStepsOneAfterTheOther) {
+  for (const std::size_t count : {1, 255, 3000, 9000}) {
+    const std::vector<std::uint32_t> values = random_values(count, 1000);
+    const std::vector<std::uint32_t> expected = add_next(SerialExecutor{}, values);
+    EXPECT_EQ(add_next(CudaExecutor(0), values), expected);
+    EXPECT_EQ(add_next(TbbExecutor{}, values), expected);
+  }
+}
+
+struct TallyByKind {
+  View<const std::uint32_t> kinds;
+
+  AERATE_HD Tally operator()(std::size_t i) const {
+    return {kinds[i] == 0 ? 1u : 0u, kinds[i] == 1 ? 1u : 0u, kinds[i]};
+  }
+};
+
+struct ListByKind {
+  View<const std::uint32_t> kinds;
+  View<std::uint32_t> zeros, ones, sums;
+
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    if (kinds[i] == 0) zeros[before.first] = static_cast<std::uint32_t>(i);
+    if (kinds[i] == 1) ones[before.second] = static_cast<std::uint32_t>(i);
+    sums[i] = before.third;
+  }
+};
+
+struct Selected {
+  std::vector<std::uint32_t> zeros, ones, sums;
+  std::uint32_t total = 0;
+
+  friend bool operator==(const Selected&, const Selected&) = default;
+};
+
+template <typename Executor>
+Selected select_by_kind(const Executor& executor, const std::vector<std::uint32_t>& kinds) {
+  const auto uploaded = executor.upload(span_of(kinds));
+  auto zeros = executor.template allocate<std::uint32_t>(kinds.size());
+  auto ones = executor.template allocate<std::uint32_t>(kinds.size());
+  auto sums = executor.template allocate<std::uint32_t>(kinds.size());
+  const Tally total = executor.select(kinds.size(), TallyByKind{uploaded.view()},
+                                      ListByKind{uploaded.view(), zeros.view(), ones.view(), sums.view()});
+  return {executor.download(View<const std::uint32_t>{zeros.view().data, total.first}),
+          executor.download(View<const std::uint32_t>{ones.view().data, total.second}),
+          executor.download(View<const std::uint32_t>(sums.view())), total.third};
+}
+
+// In one block and in several.
+TEST_F(ExecCuda, SelectsInOrder) {
+  for (const std::size_t count : {0, 1, 256, 257, 4096, 4097, 20000}) {
+    const std::vector<std::uint32_t> kinds = random_values(count, 4);
+    const Selected expected = select_by_kind(SerialExecutor{}, kinds);
+    EXPECT_EQ(expected.zeros.size(), std::count(kinds.begin(), kinds.end(), 0u));
+    EXPECT_TRUE(std::is_sorted(expected.ones.begin(), expected.ones.end()));
+    EXPECT_EQ(expected.total, std::accumulate(kinds.begin(), kinds.end(), 0u));
+    EXPECT_EQ(select_by_kind(CudaExecutor(0), kinds), expected) << count;
+    EXPECT_EQ(select_by_kind(TbbExecutor{}, kinds), expected) << count;
+  }
+}
+
+void expect_same_sort(std::vector<std::uint64_t> keys) {
+  std::vector<std::uint32_t> values(keys.size());
+  std::iota(values.begin(), values.end(), 0u);
   const CudaExecutor cuda(0);
   auto device_keys = cuda.upload(span_of(keys));
   auto device_values = cuda.upload(span_of(values));
@@ -121,16 +199,8 @@ std::vector<std::uint64_t> keys_with_ties(std::size_t count) {
   return keys;
 }
 
-TEST_F(ExecCuda, SortsIndicesByKey) {
-  for (const std::size_t count : {0, 1, 2, 3000}) {
-    std::vector<std::uint32_t> indices(count);
-    std::iota(indices.begin(), indices.end(), 0u);
-    expect_same_sort(keys_with_ties(count), indices);
-  }
-}
-
-TEST_F(ExecCuda, SortsTiesByValue) {
-  expect_same_sort(keys_with_ties(3000), random_values(3000, 1u << 30));
+TEST_F(ExecCuda, SortsByKeyAndTiesByValue) {
+  for (const std::size_t count : {0, 1, 2, 3000, 20000}) expect_same_sort(keys_with_ties(count));
 }
 
 TEST_F(ExecCuda, BuffersMoveAndOutliveTheirExecutor) {

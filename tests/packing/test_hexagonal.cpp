@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "kernels/exec_cpu.h"
 #include "kernels/hexagonal.h"
+#include "kernels/hexagonal_strips.h"
 #include "packing/hexagonal.h"
 #include "tests/support/clearance.h"
 #include "tests/support/hexagonal_input.h"
@@ -200,6 +201,24 @@ TEST(Hexagonal, IsTheSameInSlabsOfAnySize) {
     EXPECT_LE(result.slots_at_a_time, std::max<std::size_t>(most_slots, kernels::kReplacements));
     expect_same_spheres(result.spheres, expected.spheres, 0.0);
     EXPECT_EQ(result.state_counts, expected.state_counts);
+  }
+}
+
+// Tilted, so that strips along y cut through it and facets lie across them.
+TEST(Hexagonal, IsTheSameInStripsOfTheModel) {
+  Mesh tilted = test::make_torus(5, 2, 48, 24);
+  for (Vec3f& p : tilted.positions) p = {p.x, 0.8f * p.y - 0.6f * p.z, 0.6f * p.y + 0.8f * p.z};
+  const kernels::HexagonalInput input = test::hexagonal_input(tilted, 0.5);
+  const kernels::HexagonalResult expected = kernels::pack_hexagonal(kernels::SerialExecutor{}, input);
+  ASSERT_GT(expected.spheres.size(), 1000U);
+  const std::uint32_t rows = kernels::make_hexagonal_lattice(input.box, 0.5).count_y;
+  for (const std::uint32_t strips : {2U, 3U, rows}) {
+    const kernels::HexagonalResult result =
+        kernels::pack_hexagonal_in_strips(kernels::TbbExecutor{}, input, strips);
+    EXPECT_EQ(result.strips, strips);
+    expect_same_spheres(result.spheres, expected.spheres, 0.0);
+    EXPECT_EQ(result.state_counts, expected.state_counts);
+    EXPECT_LT(result.index_bytes, expected.index_bytes);
   }
 }
 
