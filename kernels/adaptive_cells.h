@@ -3,11 +3,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "kernels/adaptive_field.h"
-#include "kernels/flagged.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/tally.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
 
@@ -25,13 +26,17 @@ struct Cell {
   AERATE_HD SurfaceAnchor anchor() const { return {centre, surface, facet}; }
 };
 
+AERATE_HD inline double half_diagonal_of(double root_half_diagonal, std::uint32_t level) {
+  return root_half_diagonal / static_cast<double>(std::uint64_t{1} << level);
+}
+
 struct CellsView {
   View<Cell> cells;
   View<double> bounds;  // f in the cell is at most this; -1 once the cell is dead
   double root_half_diagonal = 0;
 
   AERATE_HD double half_diagonal(std::size_t i) const {
-    return root_half_diagonal / static_cast<double>(std::uint64_t{1} << cells[i].level);
+    return half_diagonal_of(root_half_diagonal, cells[i].level);
   }
 };
 
@@ -39,41 +44,62 @@ namespace cell_tree_detail {
 
 constexpr double kHalfDiagonalOfEdge = 0.86602540378443865;  // sqrt(3)/2
 
-struct FlagReaching {
-  View<const double> bounds;
-  double threshold;
-  View<std::uint32_t> flags;
+// What becomes of a cell or of a child that was made: nothing (not in the list, or asleep there), to be
+// halved or to be searched.
+enum class CellFate : std::uint8_t { dropped, asleep, halved, searched };
 
-  AERATE_HD void operator()(std::size_t i) const { flags[i] = bounds[i] >= threshold ? 1 : 0; }
-};
+AERATE_HD inline CellFate fate_of(double bound, double half_diagonal, double threshold, double finest) {
+  if (bound < threshold) return CellFate::asleep;
+  return half_diagonal > finest ? CellFate::halved : CellFate::searched;
+}
 
-// Brings a cell's bound up to date with the balls placed since; says whether it is to be split.
+// Brings a cell's bound up to date with the balls placed since, if that decides its fate.
 struct Examine {
   CellsView cells;
   FieldView field;
-  View<const std::uint32_t> active;
+  std::size_t first;
   double threshold;
-  double finest;  // cells of at most this half diagonal are not split
-  double most;
-  View<std::uint32_t> split;   // 1 for cells to split
-  View<std::uint32_t> search;  // 1 for cells to search
+  double finest;  // cells of at most this half diagonal are not halved
+  View<CellFate> fates;
 
   AERATE_HD void operator()(std::size_t i) const {
-    const std::uint32_t id = active[i];
+    const std::size_t id = first + i;
+    fates[i] = CellFate::asleep;
+    if (cells.bounds[id] < threshold) return;
     const Cell cell = cells.cells[id];
     const double half_diagonal = cells.half_diagonal(id);
     const double bound =
-        min_of(cell.surface - field.wall, field.balls.nearest(cell.centre, most).clearance) + half_diagonal;
-    split[i] = 0;
-    search[i] = 0;
-    if (bound < threshold) {
-      cells.bounds[id] = bound;
-    } else if (half_diagonal > finest) {
-      split[i] = 1;
-      cells.bounds[id] = -1;
-    } else {
-      search[i] = 1;
-    }
+        min_of(cell.surface - field.wall, field.balls.nearest(cell.centre, field.balls.reach).clearance) +
+        half_diagonal;
+    fates[i] = fate_of(bound, half_diagonal, threshold, finest);
+    if (fates[i] == CellFate::asleep) cells.bounds[id] = bound;
+    if (fates[i] == CellFate::halved) cells.bounds[id] = -1;
+  }
+};
+
+// First list: cells to halve; second: to search; third: those that still may be of use.
+struct TallyCells {
+  CellsView cells;
+  View<const CellFate> fates;
+  std::size_t first;
+  double least;
+
+  AERATE_HD Tally operator()(std::size_t i) const {
+    return {fates[i] == CellFate::halved ? 1u : 0u, fates[i] == CellFate::searched ? 1u : 0u,
+            cells.bounds[first + i] >= least ? 1u : 0u};
+  }
+};
+
+struct ListCells {
+  CellsView cells;
+  View<const CellFate> fates;
+  std::size_t first;
+  View<Cell> parents;
+  View<std::uint32_t> searched;
+
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    if (fates[i] == CellFate::halved) parents[before.first] = cells.cells[first + i];
+    if (fates[i] == CellFate::searched) searched[before.second] = static_cast<std::uint32_t>(first + i);
   }
 };
 
@@ -83,46 +109,92 @@ struct Child {
 };
 
 struct MakeChildren {
-  CellsView cells;
   FieldView field;
-  View<const std::uint32_t> parents;
-  double least;  // children that cannot reach this are dropped
-  double most;
+  double root_half_diagonal;
+  View<const Cell> parents;
+  double threshold;
+  double finest;
+  double least;          // children that cannot reach this are dropped
   View<Child> children;  // 8 for each parent
-  View<std::uint32_t> keep;
+  View<CellFate> fates;
 
   AERATE_HD void operator()(std::size_t i) const {
-    const std::uint32_t id = parents[i / 8];
-    const Cell parent = cells.cells[id];
-    const double half_diagonal = 0.5 * cells.half_diagonal(id);
+    const Cell parent = parents[i / 8];
+    const double half_diagonal = 0.5 * half_diagonal_of(root_half_diagonal, parent.level);
     const double offset = half_diagonal / (2 * kHalfDiagonalOfEdge);
     const Vec3d centre =
         parent.centre + Vec3d{(i & 1) != 0 ? offset : -offset, (i & 2) != 0 ? offset : -offset,
                               (i & 4) != 0 ? offset : -offset};
-    keep[i] = 0;
-    const double by_balls = field.balls.nearest(centre, most).clearance;
+    fates[i] = CellFate::dropped;
+    const double by_balls = field.balls.nearest(centre, field.balls.reach).clearance;
     if (by_balls + half_diagonal < least) return;
     const SurfaceAnchor anchor = anchor_at(field, parent.anchor(), centre);
     const double by_surface = anchor.signed_distance - field.wall;
     if (by_surface + half_diagonal < least) return;
-    children[i] = {{centre, anchor.signed_distance, anchor.facet, parent.level + 1},
-                   min_of(by_balls, by_surface) + half_diagonal};
-    keep[i] = 1;
+    const double bound = min_of(by_balls, by_surface) + half_diagonal;
+    children[i] = {{centre, anchor.signed_distance, anchor.facet, parent.level + 1}, bound};
+    fates[i] = fate_of(bound, half_diagonal, threshold, finest);
+  }
+};
+
+// First list: children to halve at once, which never become cells; second: to search; third: cells.
+struct TallyChildren {
+  View<const CellFate> fates;
+
+  AERATE_HD Tally operator()(std::size_t i) const {
+    const bool searched = fates[i] == CellFate::searched;
+    return {fates[i] == CellFate::halved ? 1u : 0u, searched ? 1u : 0u,
+            searched || fates[i] == CellFate::asleep ? 1u : 0u};
   }
 };
 
 struct AppendChildren {
   View<const Child> children;
-  View<const std::uint32_t> keep;
-  View<const std::uint32_t> offsets;
+  View<const CellFate> fates;
+  CellsView cells;
+  std::size_t first;
+  View<Cell> parents;
+  View<std::uint32_t> searched;
+
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    if (fates[i] == CellFate::dropped) return;
+    if (fates[i] == CellFate::halved) {
+      parents[before.first] = children[i].cell;
+      return;
+    }
+    const std::size_t id = first + before.third;
+    cells.cells[id] = children[i].cell;
+    cells.bounds[id] = children[i].bound;
+    if (fates[i] == CellFate::searched) searched[before.second] = static_cast<std::uint32_t>(id);
+  }
+};
+
+struct TallyUseful {
+  View<const double> bounds;
+  double least;
+
+  AERATE_HD Tally operator()(std::size_t i) const { return {bounds[i] >= least ? 1u : 0u, 0u, 0u}; }
+};
+
+struct KeepUseful {
+  View<const Cell> cells;
+  View<const double> bounds;
+  double least;
+  View<Child> kept;
+
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    if (bounds[i] >= least) kept[before.first] = {cells[i], bounds[i]};
+  }
+};
+
+struct PutBack {
+  View<const Child> kept;
   CellsView cells;
   std::size_t first;
 
   AERATE_HD void operator()(std::size_t i) const {
-    if (keep[i] == 0) return;
-    const std::size_t to = first + offsets[i];
-    cells.cells[to] = children[i].cell;
-    cells.bounds[to] = children[i].bound;
+    cells.cells[first + i] = kept[i].cell;
+    cells.bounds[first + i] = kept[i].bound;
   }
 };
 
@@ -155,7 +227,9 @@ class CellTree {
   CellsView view() { return {cells_.view(), bounds_.view(), root_half_diagonal_}; }
 
   // Covers the box; nothing is placed yet.
-  void make_roots(const FieldView& field, const Box3d& box) {
+  //   most_at_a_time: cells and children that are worked on at a time; at least 8
+  void make_roots(const FieldView& field, const Box3d& box, std::size_t most_at_a_time) {
+    most_at_a_time_ = most_at_a_time / 8 * 8;
     constexpr double kRootsAlongLongest = 12;
     const Vec3d size = box.upper - box.lower;
     const double edge = max_of(size.x, max_of(size.y, size.z)) / kRootsAlongLongest;
@@ -170,62 +244,102 @@ class CellTree {
   }
 
   // Halves cells until those in which f may reach `threshold` have half diagonals of at most `finest`.
-  // Returns these, valid until the next call. `least`: cells that cannot reach this are not made.
+  // Returns these, ascending, valid until the next call. `least`: cells that cannot reach this are of no use.
   View<const std::uint32_t> refine(const FieldView& field, double threshold, double finest, double least) {
-    using namespace cell_tree_detail;
-    const double most = field.balls.reach;
-    while (true) {
-      executor_.for_each_index(bounds_.size(), FlagReaching{bounds_.view(), threshold, flags_.view()});
-      const std::size_t active = list_flagged(executor_, flags_.view(), offsets_.view(), active_);
-      split_.resize(executor_, active);
-      wanted_.resize(executor_, active);
-      scan_.resize(executor_, active);
-      paced_.for_each_index(active, Examine{view(), field, active_.view(), threshold, finest, most,
-                                            split_.view(), wanted_.view()});
-      const std::size_t parents = list_flagged(executor_, split_.view(), scan_.view(), picked_);
-      if (parents == 0) {
-        const std::size_t searched = list_flagged(executor_, wanted_.view(), scan_.view(), picked_);
-        chosen_.resize(executor_, searched);
-        executor_.for_each_index(searched, GatherIds{active_.view(), picked_.view(), chosen_.view()});
-        return chosen_.view();
-      }
-      chosen_.resize(executor_, parents);
-      executor_.for_each_index(parents, GatherIds{active_.view(), picked_.view(), chosen_.view()});
-      split(field, least);
-    }
+    if (useful_ < cells_.size() / 2 && cells_.size() > kLeastToTidy) tidy(least);
+    searched_.clear();
+    parents_.clear();
+    examine(field, threshold, finest, least);
+    while (parents_.size() > 0) halve_parents(field, threshold, finest, least);
+    return searched_.view();
   }
 
  private:
+  static constexpr std::size_t kLeastToTidy = 4096;
+
   void resize(std::size_t count) {
     cells_.resize(executor_, count);
     bounds_.resize(executor_, count);
-    flags_.resize(executor_, count);
-    offsets_.resize(executor_, count);
   }
 
-  // Appends the children of the chosen cells.
-  void split(const FieldView& field, double least) {
+  // Calls piece(first, count) for so many elements in pieces.
+  template <typename Piece>
+  void in_pieces(std::size_t total, Piece piece) {
+    for (std::size_t first = 0; first < total; first += most_at_a_time_) {
+      piece(first, min_of(most_at_a_time_, total - first));
+    }
+  }
+
+  void examine(const FieldView& field, double threshold, double finest, double least) {
     using namespace cell_tree_detail;
-    const std::size_t count = chosen_.size() * 8;
-    children_.resize(executor_, count);
-    keep_.resize(executor_, count);
-    scan_.resize(executor_, count);
-    paced_.for_each_index(count, MakeChildren{view(), field, chosen_.view(), least, field.balls.reach,
-                                              children_.view(), keep_.view()});
-    const std::size_t kept = executor_.exclusive_scan(keep_.view(), scan_.view());
-    const std::size_t first = cells_.size();
-    resize(first + kept);
-    executor_.for_each_index(count,
-                             AppendChildren{children_.view(), keep_.view(), scan_.view(), view(), first});
+    useful_ = 0;
+    in_pieces(cells_.size(), [&](std::size_t first, std::size_t count) {
+      fates_.resize(executor_, count);
+      paced_.for_each_index(count, Examine{view(), field, first, threshold, finest, fates_.view()});
+      const std::size_t parents = parents_.size(), searched = searched_.size();
+      parents_.resize(executor_, parents + count);
+      searched_.resize(executor_, searched + count);
+      const Tally total =
+          executor_.select(count, TallyCells{view(), fates_.view(), first, least},
+                           ListCells{view(), fates_.view(), first, parents_.view_from(parents),
+                                     searched_.view_from(searched)});
+      parents_.resize(executor_, parents + total.first);
+      searched_.resize(executor_, searched + total.second);
+      useful_ += total.third;
+    });
+  }
+
+  // Makes cells of the parents' children; those to be halved again become the parents.
+  void halve_parents(const FieldView& field, double threshold, double finest, double least) {
+    using namespace cell_tree_detail;
+    next_parents_.clear();
+    in_pieces(8 * parents_.size(), [&](std::size_t first_child, std::size_t count) {
+      children_.resize(executor_, count);
+      fates_.resize(executor_, count);
+      const View<const Cell> parents{parents_.view().data + first_child / 8, count / 8};
+      paced_.for_each_index(count, MakeChildren{field, root_half_diagonal_, parents, threshold, finest, least,
+                                                children_.view(), fates_.view()});
+      const std::size_t cells = cells_.size(), next = next_parents_.size(), searched = searched_.size();
+      resize(cells + count);
+      next_parents_.resize(executor_, next + count);
+      searched_.resize(executor_, searched + count);
+      const Tally total =
+          executor_.select(count, TallyChildren{fates_.view()},
+                           AppendChildren{children_.view(), fates_.view(), view(), cells,
+                                          next_parents_.view_from(next), searched_.view_from(searched)});
+      resize(cells + total.third);
+      next_parents_.resize(executor_, next + total.first);
+      searched_.resize(executor_, searched + total.second);
+      useful_ += total.third;
+    });
+    std::swap(parents_, next_parents_);
+  }
+
+  // Drops the cells that are of no more use; the others keep their order.
+  void tidy(double least) {
+    using namespace cell_tree_detail;
+    std::size_t kept = 0;
+    in_pieces(cells_.size(), [&](std::size_t first, std::size_t count) {
+      children_.resize(executor_, count);
+      const View<const Cell> cells{cells_.view().data + first, count};
+      const View<const double> bounds{bounds_.view().data + first, count};
+      const Tally total = executor_.select(count, TallyUseful{bounds, least},
+                                           KeepUseful{cells, bounds, least, children_.view()});
+      executor_.for_each_index(total.first, PutBack{children_.view(), view(), kept});
+      kept += total.first;
+    });
+    resize(kept);
   }
 
   const Executor& executor_;
   Paced<Executor>& paced_;
+  std::size_t most_at_a_time_ = 8;
   double root_half_diagonal_ = 0;
-  GrowingBuffer<Executor, Cell> cells_;
+  std::size_t useful_ = 0;  // cells, when they were last counted
+  GrowingBuffer<Executor, Cell> cells_, parents_, next_parents_;
   GrowingBuffer<Executor, double> bounds_;
-  GrowingBuffer<Executor, std::uint32_t> flags_, offsets_, active_, split_, wanted_, scan_, picked_, chosen_,
-      keep_;
+  GrowingBuffer<Executor, cell_tree_detail::CellFate> fates_;
+  GrowingBuffer<Executor, std::uint32_t> searched_;
   GrowingBuffer<Executor, cell_tree_detail::Child> children_;
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "kernels/adaptive_field.h"
+#include "kernels/tally.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
@@ -95,25 +96,35 @@ struct LatticeFit {
   WindingView winding;
   double clearance;  // that a centre needs
   Lattice lattice{};
-  View<std::uint32_t> fits{};
+  std::size_t first{};
+  View<std::uint8_t> fits{};
 
   AERATE_HD void operator()(std::size_t i) const {
-    const Vec3d p = lattice.point(i);
+    const Vec3d p = lattice.point(first + i);
     fits[i] =
         winding.winding_number(p) == 1 && surface.nearest(p, clearance * clearance).facet == kNoFacet ? 1 : 0;
   }
 };
 
+struct TallyFitting {
+  View<const std::uint8_t> fits;
+
+  AERATE_HD Tally operator()(std::size_t i) const { return {fits[i], 0u, 0u}; }
+};
+
+struct CountOnly {
+  AERATE_HD void operator()(std::size_t, Tally) const {}
+};
+
 struct PlaceLattice {
   Lattice lattice;
-  View<const std::uint32_t> flags;
-  View<const std::uint32_t> offsets;
+  std::size_t first;
+  View<const std::uint8_t> fits;
   double radius;
-  std::size_t most;
-  View<Ball> balls;
+  View<Ball> balls;  // as many as there is room for
 
-  AERATE_HD void operator()(std::size_t i) const {
-    if (flags[i] != 0 && offsets[i] < most) balls[offsets[i]] = {lattice.point(i), radius};
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    if (fits[i] != 0 && before.first < balls.size) balls[before.first] = {lattice.point(first + i), radius};
   }
 };
 

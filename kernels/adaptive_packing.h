@@ -16,9 +16,9 @@
 #include "kernels/adaptive_refine.h"
 #include "kernels/adaptive_selection.h"
 #include "kernels/ball_grid.h"
-#include "kernels/flagged.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/tally.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
@@ -48,6 +48,9 @@ struct AdaptiveInput {
   std::span<const std::array<std::uint32_t, 3>> triangles;
   Box3d box{};  // of the positions
   AdaptiveParameters parameters;
+  // Cells, searches and places that are worked on at a time; fewer if memory asks for it. The result does not
+  // depend on it.
+  std::size_t most_at_a_time = std::size_t{1} << 20;
   // Called between pieces of work with the share that is done; what it throws ends the job.
   std::function<void(double)> progress = [](double) {};
 };
@@ -58,6 +61,7 @@ struct AdaptiveResult {
   std::size_t search_count = 0;   // searches for a local maximum
   std::size_t round_count = 0;
   std::size_t index_bytes = 0;
+  std::size_t most_at_a_time = 0;
 };
 
 namespace adaptive_detail {
@@ -69,7 +73,7 @@ struct Search {
   RefineLimits limits;
   double shrink;  // taken off every radius, against rounding
   View<Candidate> candidates;
-  View<std::uint32_t> found;
+  View<std::uint8_t> found;
 
   AERATE_HD void operator()(std::size_t i) const {
     const std::uint32_t id = list[i];
@@ -86,30 +90,57 @@ struct Search {
   }
 };
 
+struct TallyFound {
+  View<const std::uint8_t> found;
+
+  AERATE_HD Tally operator()(std::size_t i) const { return {found[i], 0u, 0u}; }
+};
+
+// Appends what was found, ready to be ranked.
+struct ListFound {
+  View<const Candidate> searched;
+  View<const std::uint8_t> found;
+  std::size_t first;
+  View<Candidate> candidates;
+  View<std::uint64_t> keys;
+  View<std::uint32_t> order;
+
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    if (found[i] == 0) return;
+    const std::size_t to = first + before.first;
+    candidates[to] = searched[i];
+    keys[to] = rank_key(searched[i]);
+    order[to] = static_cast<std::uint32_t>(to);
+  }
+};
+
+// How many elements may be worked on at a time: the largest buffers of those hold 160 bytes for each, and are
+// to take no more than a quarter of the memory.
+inline std::size_t elements_at_a_time(std::size_t free_bytes, std::size_t most) {
+  constexpr std::size_t kBytes = 160, kLeast = 512;
+  return max_of(min_of(free_bytes / 4 / kBytes, most), kLeast);
+}
+
 }  // namespace adaptive_detail
 
 template <typename Executor>
 class AdaptivePacker {
  public:
-  // facets: of a closed mesh, in the executor's memory, inside `box`. The executor and `progress` stay with
-  // the caller.
-  AdaptivePacker(const Executor& executor, View<const Facet> facets, const Box3d& box,
-                 const AdaptiveParameters& parameters, const std::function<void(double)>& progress)
+  // The executor and the input stay with the caller.
+  AdaptivePacker(const Executor& executor, const AdaptiveInput& input)
       : executor_(executor),
-        paced_(executor, [this, &progress] { progress(share_done()); }),
-        parameters_(parameters),
-        box_(box),
+        paced_(executor, [this, &input] { input.progress(share_done()); }),
+        parameters_(input.parameters),
+        box_(input.box),
         grid_(executor),
         tree_(executor, paced_),
         selection_(executor, paced_) {
-    bvh_ = build_triangle_bvh(executor_, facets, box);
-    progress(0);
-    winding_ = build_winding_index(executor_, facets, box);
-    progress(0);
-    const Vec3d size = box.upper - box.lower;
+    build_index(input);
+    at_a_time_ = adaptive_detail::elements_at_a_time(executor_.free_bytes(), input.most_at_a_time);
+    const Vec3d size = box_.upper - box_.lower;
     const double longest = max_of(size.x, max_of(size.y, size.z));
-    shrink_ = longest * 1e-13 + (std::abs(box.lower.x) + std::abs(box.lower.y) + std::abs(box.lower.z) +
-                                 std::abs(box.upper.x) + std::abs(box.upper.y) + std::abs(box.upper.z)) *
+    shrink_ = longest * 1e-13 + (std::abs(box_.lower.x) + std::abs(box_.lower.y) + std::abs(box_.lower.z) +
+                                 std::abs(box_.upper.x) + std::abs(box_.upper.y) + std::abs(box_.upper.z)) *
                                     1e-14;
   }
 
@@ -119,11 +150,23 @@ class AdaptivePacker {
   AdaptiveResult pack() {
     place_all();
     return {executor_.download(balls_.view()), lattice_count_, search_count_, round_count_,
-            bvh_.bytes() + winding_.bytes()};
+            bvh_.bytes() + winding_.bytes(),   at_a_time_};
   }
 
  private:
   static constexpr double kLatticeDiameters = 3;
+
+  // The winding numbers' index is made of the hierarchy's own facets, so that they are in memory once.
+  void build_index(const AdaptiveInput& input) {
+    {
+      const auto facets = gather_facets(executor_, input.positions, input.triangles);
+      input.progress(0);
+      bvh_ = build_triangle_bvh(executor_, facets.view(), box_);
+    }
+    input.progress(0);
+    winding_ = build_winding_index(executor_, bvh_.view.facets, box_);
+    input.progress(0);
+  }
 
   void place_all() {
     const Vec3d size = box_.upper - box_.lower;
@@ -131,8 +174,9 @@ class AdaptivePacker {
     double largest = min_of(half_extent, parameters_.max_radius);
     place_lattice(half_extent);
     if (done_) return;
-    tree_.make_roots(field(), box_);
+    tree_.make_roots(field(), box_, at_a_time_);
     rebuild_grids(largest);
+    grid_.enter(balls_.view(), 0, parameters_.max_radius);
     threshold_ =
         parameters_.max_radius < half_extent ? largest - 4 * shrink_ : largest * parameters_.level_ratio;
     while (true) {
@@ -174,35 +218,49 @@ class AdaptivePacker {
     for (std::uint32_t trial = 0; trial < parameters_.lattice_trials; ++trial) {
       const Lattice lattice = make_lattice(box_, parameters_.max_radius + 0.5 * parameters_.gap + shrink_,
                                            parameters_.max_radius + parameters_.wall, trial);
-      const std::size_t count = fit_lattice(fit, lattice);
+      const std::size_t count = count_fitting(fit, lattice);
       if (count <= best_count) continue;
       best = lattice;
       best_count = count;
     }
     if (best_count == 0) return;
-    fit_lattice(fit, best);
     best_count = std::min(best_count, parameters_.max_count);
     lattice_count_ = best_count;
     balls_.resize(executor_, best_count);
-    executor_.for_each_index(found_.size(), PlaceLattice{best, found_.view(), scan_.view(),
-                                                         parameters_.max_radius, best_count, balls_.view()});
+    std::size_t placed = 0;
+    for_each_fit(fit, best, [&](std::size_t first, View<const std::uint8_t> fits) {
+      const PlaceLattice place{best, first, fits, parameters_.max_radius, balls_.view_from(placed)};
+      const Tally total = executor_.select(fits.size, TallyFitting{fits}, place);
+      placed = std::min(placed + total.first, best_count);
+    });
     stop_at_limits(0);
   }
 
-  std::size_t fit_lattice(LatticeFit fit, const Lattice& lattice) {
+  std::size_t count_fitting(const LatticeFit& fit, const Lattice& lattice) {
+    std::size_t count = 0;
+    for_each_fit(fit, lattice, [&](std::size_t, View<const std::uint8_t> fits) {
+      count += executor_.select(fits.size, TallyFitting{fits}, CountOnly{}).first;
+    });
+    return count;
+  }
+
+  // Calls piece(first, fits) for the lattice's places in pieces.
+  template <typename Piece>
+  void for_each_fit(LatticeFit fit, const Lattice& lattice, Piece piece) {
     fit.lattice = lattice;
-    const std::size_t count = lattice.size();
-    found_.resize(executor_, count);
-    scan_.resize(executor_, count);
-    fit.fits = found_.view();
-    paced_.for_each_index(count, fit);
-    return executor_.exclusive_scan(found_.view(), scan_.view());
+    for (std::size_t first = 0; first < lattice.size(); first += at_a_time_) {
+      const std::size_t count = std::min(at_a_time_, lattice.size() - first);
+      found_.resize(executor_, count);
+      fit.first = first;
+      fit.fits = found_.view();
+      paced_.for_each_index(count, fit);
+      piece(first, found_.view());
+    }
   }
 
   // Grids for clearances up to `reach`, with all balls placed so far.
   void rebuild_grids(double reach) {
-    grid_.reset(box_, reach, parameters_.gap);
-    grid_.enter(balls_.view(), 0);
+    grid_.reset(box_, reach, parameters_.gap, at_a_time_);
     selection_.reset(box_, reach, parameters_.gap, grid_.cell());
   }
 
@@ -214,19 +272,39 @@ class AdaptivePacker {
         field(), threshold_, parameters_.cell_ratio * threshold_, max_of(parameters_.min_radius, 0.0));
     if (cells.size == 0) return false;
     search_count_ += cells.size;
-    candidates_.resize(executor_, cells.size);
-    found_.resize(executor_, cells.size);
-    scan_.resize(executor_, cells.size);
-    const RefineLimits limits{threshold_ + shrink_, grid_.reach(), parameters_.tolerance_ratio * threshold_,
-                              parameters_.region_ratio};
-    paced_.for_each_index(
-        cells.size, Search{tree_.view(), field(), cells, limits, shrink_, candidates_.view(), found_.view()});
-    if (list_flagged(executor_, found_.view(), scan_.view(), listed_) == 0) return false;
+    search(cells);
+    if (candidates_.size() == 0) return false;
     const std::size_t first = balls_.size();
-    selection_.place(candidates_.view(), listed_.view(), parameters_.max_count - first, balls_);
-    grid_.enter(balls_.view(), first);
+    selection_.place(candidates_.view(), keys_.view(), order_.view(), parameters_.max_count - first, balls_);
+    grid_.enter(balls_.view(), first, grid_.reach());
     stop_at_limits(first);
     return true;
+  }
+
+  // Leaves what is found in these cells in `candidates_`, with keys and order for ranking.
+  void search(View<const std::uint32_t> cells) {
+    using namespace adaptive_detail;
+    const RefineLimits limits{threshold_ + shrink_, grid_.reach(), parameters_.tolerance_ratio * threshold_,
+                              parameters_.region_ratio};
+    std::size_t found = 0;
+    for (std::size_t first = 0; first < cells.size; first += at_a_time_) {
+      const View<const std::uint32_t> list{cells.data + first, std::min(at_a_time_, cells.size - first)};
+      searched_.resize(executor_, list.size);
+      found_.resize(executor_, list.size);
+      resize_candidates(found + list.size);
+      paced_.for_each_index(
+          list.size, Search{tree_.view(), field(), list, limits, shrink_, searched_.view(), found_.view()});
+      const ListFound append{searched_.view(),   found_.view(), found,
+                             candidates_.view(), keys_.view(),  order_.view()};
+      found += executor_.select(list.size, TallyFound{found_.view()}, append).first;
+    }
+    resize_candidates(found);
+  }
+
+  void resize_candidates(std::size_t count) {
+    candidates_.resize(executor_, count);
+    keys_.resize(executor_, count);
+    order_.resize(executor_, count);
   }
 
   // Looks at the balls from `first` on; takes back those beyond the wanted volume.
@@ -256,22 +334,27 @@ class AdaptivePacker {
   double threshold_ = 0;
   double volume_ = 0;
   bool done_ = false;
+  std::size_t at_a_time_ = 0;
   std::size_t search_count_ = 0, round_count_ = 0, lattice_count_ = 0;
 
   BallGrid<Executor> grid_;
   CellTree<Executor> tree_;
   CandidateSelection<Executor> selection_;
   GrowingBuffer<Executor, Ball> balls_;
-  GrowingBuffer<Executor, Candidate> candidates_;
-  GrowingBuffer<Executor, std::uint32_t> found_, scan_, listed_;
+  GrowingBuffer<Executor, Candidate> searched_, candidates_;
+  GrowingBuffer<Executor, std::uint8_t> found_;
+  GrowingBuffer<Executor, std::uint64_t> keys_;
+  GrowingBuffer<Executor, std::uint32_t> order_;
 };
+
+// What the index needs while it is built, about, for each facet: the facets twice, in the mesh's order and in
+// the hierarchy's, their boxes, and keys and order with a second copy to sort them.
+inline constexpr std::size_t kAdaptiveIndexBytes = 2 * sizeof(Facet) + sizeof(Box3f) + 12;
 
 // The whole job. The triangles go to the executor's memory once, and each ball comes back once.
 template <typename Executor>
 AdaptiveResult pack_adaptive(const Executor& executor, const AdaptiveInput& input) {
-  const auto facets = gather_facets(executor, input.positions, input.triangles);
-  return AdaptivePacker<Executor>(executor, facets.view(), input.box, input.parameters, input.progress)
-      .pack();
+  return AdaptivePacker<Executor>(executor, input).pack();
 }
 
 }  // namespace aerate::kernels

@@ -9,6 +9,7 @@
 #include "kernels/ball_grid.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/tally.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
 #include "kernels/winding.h"
@@ -22,32 +23,17 @@ struct Candidate {
   double value;
 };
 
+// Sorts candidates, the largest first.
+AERATE_HD inline std::uint64_t rank_key(const Candidate& candidate) {
+  union {
+    double value;
+    std::uint64_t bits;
+  } convert;
+  convert.value = candidate.value;
+  return ~convert.bits;  // positive doubles sort as their bits do
+}
+
 namespace selection_detail {
-
-struct RankKeys {
-  View<const Candidate> candidates;
-  View<const std::uint32_t> list;
-  View<std::uint64_t> keys;
-  View<std::uint32_t> order;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    union {
-      double value;
-      std::uint64_t bits;
-    } convert;
-    convert.value = candidates[list[i]].value;
-    keys[i] = ~convert.bits;  // positive doubles sort as their bits do; largest first
-    order[i] = list[i];
-  }
-};
-
-struct Gather {
-  View<const Candidate> from;
-  View<const std::uint32_t> order;
-  View<Candidate> to;
-
-  AERATE_HD void operator()(std::size_t i) const { to[i] = from[order[i]]; }
-};
 
 enum class Verdict : std::uint32_t { undecided, accepted, rejected };
 
@@ -58,7 +44,6 @@ struct CandidateGrid {
   std::uint32_t count_x = 1, count_y = 1, count_z = 1;
   View<std::uint32_t> heads;
   View<std::uint32_t> next;
-  View<const Candidate> candidates;
   double gap = 0;
 
   AERATE_HD std::uint32_t cell_x(double x) const {
@@ -76,31 +61,47 @@ struct CandidateGrid {
   AERATE_HD std::size_t cell_of(Vec3d p) const { return index(cell_x(p.x), cell_y(p.y), cell_z(p.z)); }
 };
 
-struct LinkCandidates {
-  CandidateGrid grid;
-  AERATE_HD void operator()(std::size_t i) const {
-    grid.next[i] =
-        atomic_exchange(grid.heads[grid.cell_of(grid.candidates[i].point)], static_cast<std::uint32_t>(i));
-  }
-};
-
-struct UnlinkCandidates {
-  CandidateGrid grid;
-  AERATE_HD void operator()(std::size_t i) const {
-    // Several threads may store the same value.
-    atomic_exchange(grid.heads[grid.cell_of(grid.candidates[i].point)], kNoBall);
-  }
-};
-
+// All that happens to ranked candidates until it is known which are accepted, step by step: they are linked,
+// decided on in several passes, and unlinked. A chain of candidates that wait for each other may stay
+// undecided; those get their turn in the next round.
 struct Decide {
-  CandidateGrid grid;
-  View<const Verdict> before;
-  View<Verdict> after;
+  static constexpr unsigned kPasses = 4;
+  static constexpr unsigned kSteps = kPasses + 2;
 
-  AERATE_HD void operator()(std::size_t i) const {
-    after[i] = before[i];
-    if (before[i] != Verdict::undecided) return;
-    const Candidate me = grid.candidates[i];
+  CandidateGrid grid;
+  View<const Candidate> unranked;
+  View<const std::uint32_t> order;
+  View<Candidate> ranked;
+  View<Verdict> even, odd;  // verdicts before and after passes of even number; in `even` at last
+
+  AERATE_HD void operator()(unsigned step, std::size_t i) const {
+    if (step == 0) {
+      link(i);
+    } else if (step <= kPasses) {
+      if (step % 2 == 1) {
+        odd[i] = verdict_on(i, even);
+      } else {
+        even[i] = verdict_on(i, odd);
+      }
+    } else {
+      // Several threads may store the same value.
+      atomic_exchange(grid.heads[grid.cell_of(ranked[i].point)], kNoBall);
+    }
+  }
+
+ private:
+  static_assert(kPasses % 2 == 0);
+
+  AERATE_HD void link(std::size_t i) const {
+    const Candidate candidate = unranked[order[i]];
+    ranked[i] = candidate;
+    even[i] = Verdict::undecided;
+    grid.next[i] = atomic_exchange(grid.heads[grid.cell_of(candidate.point)], static_cast<std::uint32_t>(i));
+  }
+
+  AERATE_HD Verdict verdict_on(std::size_t i, View<const Verdict> before) const {
+    if (before[i] != Verdict::undecided) return before[i];
+    const Candidate me = ranked[i];
     bool blocked = false;
     const std::uint32_t cx = grid.cell_x(me.point.x), cy = grid.cell_y(me.point.y),
                         cz = grid.cell_z(me.point.z);
@@ -109,39 +110,35 @@ struct Decide {
         for (std::uint32_t x = cx == 0 ? 0 : cx - 1; x <= cx + 1 && x < grid.count_x; ++x) {
           for (std::uint32_t j = grid.heads[grid.index(x, y, z)]; j != kNoBall; j = grid.next[j]) {
             if (j >= i || before[j] == Verdict::rejected) continue;
-            const Candidate other = grid.candidates[j];
+            const Candidate other = ranked[j];
             const double span = me.value + other.value + grid.gap;
             if (length_squared(me.point - other.point) >= span * span) continue;
-            if (before[j] == Verdict::accepted) {
-              after[i] = Verdict::rejected;
-              return;
-            }
+            if (before[j] == Verdict::accepted) return Verdict::rejected;
             blocked = true;
           }
         }
       }
     }
-    if (!blocked) after[i] = Verdict::accepted;
+    return blocked ? Verdict::undecided : Verdict::accepted;
   }
 };
 
-struct FlagAccepted {
+struct TallyAccepted {
   View<const Verdict> verdicts;
-  View<std::uint32_t> flags;
-  AERATE_HD void operator()(std::size_t i) const { flags[i] = verdicts[i] == Verdict::accepted ? 1 : 0; }
+
+  AERATE_HD Tally operator()(std::size_t i) const {
+    return {verdicts[i] == Verdict::accepted ? 1u : 0u, 0u, 0u};
+  }
 };
 
 struct PlaceAccepted {
   View<const Candidate> candidates;
-  View<const std::uint32_t> flags;
-  View<const std::uint32_t> offsets;
-  std::size_t first;
-  std::size_t most;
-  View<Ball> balls;
+  View<const Verdict> verdicts;
+  View<Ball> balls;  // as many as there is room for
 
-  AERATE_HD void operator()(std::size_t i) const {
-    if (flags[i] != 0 && offsets[i] < most) {
-      balls[first + offsets[i]] = {candidates[i].point, candidates[i].value};
+  AERATE_HD void operator()(std::size_t i, Tally before) const {
+    if (verdicts[i] == Verdict::accepted && before.first < balls.size) {
+      balls[before.first] = {candidates[i].point, candidates[i].value};
     }
   }
 };
@@ -169,64 +166,38 @@ class CandidateSelection {
     executor_.for_each_index(cells, SetAll<std::uint32_t>{grid_.heads, kNoBall});
   }
 
-  // Appends balls, at most `most`, for those of the listed candidates that meet no larger one. Of candidates
-  // alike the first in the list wins.
-  void place(View<const Candidate> candidates, View<const std::uint32_t> list, std::size_t most,
-             GrowingBuffer<Executor, Ball>& balls) {
+  // Appends balls, at most `most`, for those candidates that meet no larger one. Of candidates alike the
+  // first wins.
+  //   keys, order: their `rank_key`s and indices, in order; left sorted
+  void place(View<const Candidate> candidates, View<std::uint64_t> keys, View<std::uint32_t> order,
+             std::size_t most, GrowingBuffer<Executor, Ball>& balls) {
     using namespace selection_detail;
-    const std::size_t count = list.size;
-    rank(candidates, list);
-    decide(count);
-    flags_.resize(executor_, count);
-    scan_.resize(executor_, count);
-    executor_.for_each_index(count, FlagAccepted{verdicts_.view(), flags_.view()});
-    const std::size_t accepted =
-        std::min<std::size_t>(executor_.exclusive_scan(flags_.view(), scan_.view()), most);
+    const std::size_t count = candidates.size;
+    executor_.sort_pairs(keys, order);
+    ranked_.resize(executor_, count);
+    next_.resize(executor_, count);
+    verdicts_.resize(executor_, count);
+    other_verdicts_.resize(executor_, count);
+    grid_.next = next_.view();
+    paced_.for_each_step(
+        Decide::kSteps, count,
+        Decide{grid_, candidates, order, ranked_.view(), verdicts_.view(), other_verdicts_.view()});
     const std::size_t first = balls.size();
-    balls.resize(executor_, first + accepted);
-    executor_.for_each_index(
-        count, PlaceAccepted{ranked_.view(), flags_.view(), scan_.view(), first, accepted, balls.view()});
+    balls.resize(executor_, first + std::min(count, most));
+    const Tally accepted =
+        executor_.select(count, TallyAccepted{verdicts_.view()},
+                         PlaceAccepted{ranked_.view(), verdicts_.view(), balls.view_from(first)});
+    balls.resize(executor_, first + std::min<std::size_t>(accepted.first, most));
   }
 
  private:
-  // Leaves the listed candidates in `ranked_`, the largest first.
-  void rank(View<const Candidate> candidates, View<const std::uint32_t> list) {
-    using namespace selection_detail;
-    keys_.resize(executor_, list.size);
-    order_.resize(executor_, list.size);
-    executor_.for_each_index(list.size, RankKeys{candidates, list, keys_.view(), order_.view()});
-    executor_.sort_pairs(keys_.view(), order_.view());
-    ranked_.resize(executor_, list.size);
-    executor_.for_each_index(list.size, Gather{candidates, order_.view(), ranked_.view()});
-  }
-
-  // Leaves the verdicts on the ranked candidates in `verdicts_`. A chain of candidates that wait for each
-  // other may stay undecided: those get their turn in the next round.
-  void decide(std::size_t count) {
-    using namespace selection_detail;
-    next_.resize(executor_, count);
-    verdicts_.resize(executor_, count);
-    new_verdicts_.resize(executor_, count);
-    grid_.candidates = ranked_.view();
-    grid_.next = next_.view();
-    executor_.for_each_index(count, LinkCandidates{grid_});
-    executor_.for_each_index(count, SetAll<Verdict>{verdicts_.view(), Verdict::undecided});
-    constexpr int kPasses = 4;
-    for (int pass = 0; pass < kPasses; ++pass) {
-      paced_.for_each_index(count, Decide{grid_, verdicts_.view(), new_verdicts_.view()});
-      std::swap(verdicts_, new_verdicts_);
-    }
-    executor_.for_each_index(count, UnlinkCandidates{grid_});
-  }
-
   const Executor& executor_;
   Paced<Executor>& paced_;
   selection_detail::CandidateGrid grid_;
   typename Executor::template Buffer<std::uint32_t> heads_;
-  GrowingBuffer<Executor, std::uint64_t> keys_;
-  GrowingBuffer<Executor, std::uint32_t> order_, next_, flags_, scan_;
+  GrowingBuffer<Executor, std::uint32_t> next_;
   GrowingBuffer<Executor, Candidate> ranked_;
-  GrowingBuffer<Executor, selection_detail::Verdict> verdicts_, new_verdicts_;
+  GrowingBuffer<Executor, selection_detail::Verdict> verdicts_, other_verdicts_;
 };
 
 }  // namespace aerate::kernels

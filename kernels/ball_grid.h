@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
+#include <vector>
 
 #include "kernels/atomic.h"
 #include "kernels/growing_buffer.h"
@@ -119,55 +121,28 @@ struct AxisDistances {
   }
 };
 
-// A ball's layers of cells along z: the unit of work, so that a large ball is not one thread's.
-struct CountLayers {
-  BallGridView grid;
-  std::uint32_t first_ball;
-  View<std::uint32_t> layers;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    const Ball ball = grid.balls[first_ball + i];
-    const CellRange range(grid, ball.centre, ball.radius + grid.gap + grid.reach);
-    layers[i] = range.z1 - range.z0 + 1;
-  }
-};
-
-struct ListLayers {
-  View<const std::uint32_t> offsets;
-  View<const std::uint32_t> layers;
-  View<std::uint32_t> layer_ball;
-  View<std::uint32_t> layer_index;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    for (std::uint32_t k = 0; k < layers[i]; ++k) {
-      layer_ball[offsets[i] + k] = static_cast<std::uint32_t>(i);
-      layer_index[offsets[i] + k] = k;
-    }
-  }
-};
-
 enum class EnterPass { mark_inside_and_count, link };
 
+// Enters one layer of cells along z of a ball: the unit of work, so that a large ball is not one thread's.
 struct EnterLayer {
   BallGridView grid;
   std::uint32_t first_ball;
-  View<const std::uint32_t> layer_ball;
-  View<const std::uint32_t> layer_index;
+  std::uint32_t layers;  // for each ball: at least as many as any has
   EnterPass pass;
-  View<std::uint32_t> counts;         // by layer, written by the first pass
-  View<const std::uint32_t> offsets;  // by layer, read by the second
-  std::uint32_t first_entry;
+  View<std::uint32_t> first_entries;  // by layer, written by the first pass, read by the second
+  View<std::uint32_t> entry_count;    // one number: entries that are given out, in an order that nobody sees
 
-  AERATE_HD void operator()(std::size_t layer) const {
-    const std::uint32_t id = first_ball + layer_ball[layer];
+  AERATE_HD void operator()(std::size_t i) const {
+    const std::uint32_t id = first_ball + static_cast<std::uint32_t>(i / layers);
     const Ball ball = grid.balls[id];
     const double outer = ball.radius + grid.gap + grid.reach;
     // Half the gap belongs to each ball: cells inside two balls at once cannot be.
     const double inner = ball.radius + 0.5 * grid.gap;
     const CellRange range(grid, ball.centre, outer);
-    const std::uint32_t z = range.z0 + layer_index[layer];
+    const std::uint32_t z = range.z0 + static_cast<std::uint32_t>(i % layers);
+    if (z > range.z1) return;
     const AxisDistances dz(ball.centre.z, grid.origin.z, grid.cell, z);
-    std::uint32_t entry = pass == EnterPass::link ? first_entry + offsets[layer] : 0;
+    std::uint32_t entry = pass == EnterPass::link ? first_entries[i] : 0;
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
       const AxisDistances dy(ball.centre.y, grid.origin.y, grid.cell, y);
       for (std::uint32_t x = range.x0; x <= range.x1; ++x) {
@@ -182,17 +157,16 @@ struct EnterLayer {
             ++entry;
           }
         } else if (!inside) {
-          // A slot is used up even where the cell lies in another ball: offsets must not depend on that.
           const std::uint32_t head = atomic_load(grid.heads[cell]);
           if (head == BallGridView::kEmpty || (head & BallGridView::kInsideBit) == 0) {
             grid.entries[entry].ball = id;
             grid.entries[entry].next = atomic_exchange(grid.heads[cell], entry);
+            ++entry;
           }
-          ++entry;
         }
       }
     }
-    if (pass == EnterPass::mark_inside_and_count) counts[layer] = entry;
+    if (pass == EnterPass::mark_inside_and_count) first_entries[i] = atomic_add(entry_count[0], entry);
   }
 };
 
@@ -201,18 +175,20 @@ struct EnterLayer {
 template <typename Executor>
 class BallGrid {
  public:
-  explicit BallGrid(const Executor& executor) : executor_(executor) {}
+  explicit BallGrid(const Executor& executor)
+      : executor_(executor), entry_count_(executor.template allocate<std::uint32_t>(1)) {}
 
   BallGridView view() { return view_; }
   double reach() const { return view_.reach; }
   double cell() const { return view_.cell; }
 
-  // An empty grid over the box for clearances up to `reach`.
-  void reset(const Box3d& box, double reach, double gap) {
-    constexpr double kMostCells = 1 << 25;
+  // A grid over the box for clearances up to `reach`, with all balls that have been entered so far.
+  //   most_at_a_time: layers of balls that are worked on at a time, four bytes each
+  void reset(const Box3d& box, double reach, double gap, std::size_t most_at_a_time) {
+    most_at_a_time_ = most_at_a_time;
     const Vec3d size = box.upper - box.lower;
     const double volume = max_of(size.x, reach) * max_of(size.y, reach) * max_of(size.z, reach);
-    const double cell = max_of(reach, std::cbrt(volume / kMostCells));
+    const double cell = max_of(reach, std::cbrt(volume / most_cells()));
     view_.origin = box.lower;
     view_.cell = cell;
     view_.cells_per_mm = 1 / cell;
@@ -222,45 +198,77 @@ class BallGrid {
     view_.reach = reach;
     view_.gap = gap;
     const std::size_t count = std::size_t{view_.count_x} * view_.count_y * view_.count_z;
-    if (heads_.size() < count) heads_ = executor_.template allocate<std::uint32_t>(count);
+    if (heads_.size() < count) {
+      heads_ = {};
+      heads_ = executor_.template allocate<std::uint32_t>(count);
+    }
     view_.heads = {heads_.view().data, count};
     executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, BallGridView::kEmpty});
-    entries_.resize(executor_, 0);
+    executor_.for_each_index(1, SetAll<std::uint32_t>{entry_count_.view(), 0});
+    entries_.clear();
+    for (std::size_t k = 0; k < groups_.size(); ++k) {
+      enter(groups_[k].first, k + 1 < groups_.size() ? groups_[k + 1].first : view_.balls.size,
+            groups_[k].largest);
+    }
   }
 
-  // Enters the balls from `first` on. All stay where they are until the next call or `reset`.
-  void enter(View<const Ball> balls, std::size_t first) {
-    using namespace ball_grid_detail;
-    const std::size_t count = balls.size - first;
+  // Enters the balls from `first` on, none larger than `largest`. All stay where they are until the next
+  // call.
+  void enter(View<const Ball> balls, std::size_t first, double largest) {
     view_.balls = balls;
-    if (count == 0) return;
-    const auto first_ball = static_cast<std::uint32_t>(first);
-    auto layers = executor_.template allocate<std::uint32_t>(count);
-    auto layer_offsets = executor_.template allocate<std::uint32_t>(count);
-    executor_.for_each_index(count, CountLayers{view_, first_ball, layers.view()});
-    const std::size_t total = executor_.exclusive_scan(layers.view(), layer_offsets.view());
-    auto layer_ball = executor_.template allocate<std::uint32_t>(total);
-    auto layer_index = executor_.template allocate<std::uint32_t>(total);
-    executor_.for_each_index(
-        count, ListLayers{layer_offsets.view(), layers.view(), layer_ball.view(), layer_index.view()});
-    auto counts = executor_.template allocate<std::uint32_t>(total);
-    auto offsets = executor_.template allocate<std::uint32_t>(total);
-    executor_.for_each_index(total,
-                             EnterLayer{view_, first_ball, layer_ball.view(), layer_index.view(),
-                                        EnterPass::mark_inside_and_count, counts.view(), offsets.view(), 0});
-    const std::size_t added = executor_.exclusive_scan(counts.view(), offsets.view());
-    const std::size_t before = entries_.size();
-    entries_.resize(executor_, before + added);
-    view_.entries = entries_.view();
-    executor_.for_each_index(
-        total, EnterLayer{view_, first_ball, layer_ball.view(), layer_index.view(), EnterPass::link,
-                          counts.view(), offsets.view(), static_cast<std::uint32_t>(before)});
+    if (balls.size == first) return;
+    // Balls of about the same size are entered together by `reset`.
+    if (groups_.empty() || largest < 0.5 * groups_.back().largest) groups_.push_back({first, largest});
+    groups_.back().largest = max_of(groups_.back().largest, largest);
+    enter(first, balls.size, largest);
   }
 
  private:
+  struct Group {
+    std::size_t first;
+    double largest;
+  };
+
+  // More would be of use to few models; and no more than an eighth of the memory.
+  double most_cells() const {
+    constexpr std::size_t kMost = std::size_t{1} << 25;
+    const std::size_t fitting = executor_.free_bytes() / 8 / sizeof(std::uint32_t);
+    return static_cast<double>(max_of(min_of(fitting, kMost), std::size_t{1024}));
+  }
+
+  void enter(std::size_t first, std::size_t last, double largest) {
+    using namespace ball_grid_detail;
+    const double across = 2 * (largest + view_.gap + view_.reach) * view_.cells_per_mm;
+    const auto layers = static_cast<std::uint32_t>(min_of(across + 3, view_.count_z * 1.0));
+    const std::size_t at_a_time = max_of(most_at_a_time_ / layers, std::size_t{1});
+    for (std::size_t begin = first; begin < last; begin += at_a_time) {
+      const std::size_t count = min_of(at_a_time, last - begin) * layers;
+      first_entries_.resize(executor_, count);
+      EnterLayer layer{view_,
+                       static_cast<std::uint32_t>(begin),
+                       layers,
+                       EnterPass::mark_inside_and_count,
+                       first_entries_.view(),
+                       entry_count_.view()};
+      executor_.for_each_index(count, layer);
+      const std::uint32_t entries = executor_.download(View<const std::uint32_t>(entry_count_.view()))[0];
+      if (entries >= BallGridView::kInsideBit) {
+        throw std::length_error("ball grid: more than 2^31 - 1 entries");
+      }
+      entries_.resize(executor_, entries);
+      view_.entries = entries_.view();
+      layer.grid = view_;
+      layer.pass = EnterPass::link;
+      executor_.for_each_index(count, layer);
+    }
+  }
+
   const Executor& executor_;
   BallGridView view_;
-  typename Executor::template Buffer<std::uint32_t> heads_;
+  std::size_t most_at_a_time_ = 1;
+  std::vector<Group> groups_;
+  typename Executor::template Buffer<std::uint32_t> heads_, entry_count_;
+  GrowingBuffer<Executor, std::uint32_t> first_entries_;
   GrowingBuffer<Executor, BallEntry> entries_;
 };
 

@@ -19,6 +19,15 @@ struct FromIndex {
   AERATE_HD void operator()(std::size_t i) const { f(first + i); }
 };
 
+// Kernel: one step of an f(step, i).
+template <typename F>
+struct OneStep {
+  F f;
+  unsigned step;
+
+  AERATE_HD void operator()(std::size_t i) const { f(step, i); }
+};
+
 // Runs long loops on an executor in pieces of about a quarter of a second and calls `poll` between them; what
 // that throws ends the loop. The sizes of the pieces follow the clock, on which no result depends.
 template <typename Executor>
@@ -42,8 +51,18 @@ class Paced {
     }
   }
 
+  // f(step, i), one step after the other.
+  template <typename F>
+  void for_each_step(unsigned steps, std::size_t count, F f) {
+    if (count <= kFirstPiece) {
+      executor_.for_each_step(steps, count, f);
+      return;
+    }
+    for (unsigned step = 0; step < steps; ++step) for_each_index(count, OneStep<F>{f, step});
+  }
+
  private:
-  static constexpr std::size_t kFirstPiece = 8192;
+  static constexpr std::size_t kFirstPiece = Executor::kLeastPiece;
   static constexpr double kPieceSeconds = 0.25;
 
   const Executor& executor_;

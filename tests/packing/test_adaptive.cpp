@@ -11,8 +11,11 @@
 #include <tbb/task_arena.h>
 
 #include "core/error.h"
+#include "kernels/adaptive_packing.h"
+#include "kernels/exec_cpu.h"
 #include "packing/adaptive.h"
 #include "packing/verify.h"
+#include "tests/support/adaptive_input.h"
 #include "tests/support/clearance.h"
 #include "tests/support/shapes.h"
 
@@ -186,6 +189,25 @@ TEST(Adaptive, SameBytesForAnyNumberOfThreads) {
       arena.execute([&] { expect_same_bytes(serial, pack(bracket, limits)); });
     }
   }
+}
+
+// Cells, searches and places of the lattice in pieces, as a device of little memory needs them.
+TEST(Adaptive, IsTheSameInPiecesOfAnySize) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  kernels::AdaptiveInput input = test::adaptive_input(torus);
+  input.parameters.max_radius = 0.6;
+  input.parameters.min_radius = 0.25;
+  input.parameters.gap = 0.05;
+  const kernels::AdaptiveResult whole = kernels::pack_adaptive(kernels::TbbExecutor{}, input);
+  ASSERT_GT(whole.lattice_count, 50U);
+  ASSERT_GT(whole.balls.size(), whole.lattice_count + 200);
+  input.most_at_a_time = 1;
+  const kernels::AdaptiveResult pieces = kernels::pack_adaptive(kernels::TbbExecutor{}, input);
+  EXPECT_LT(pieces.most_at_a_time, 1000U);
+  EXPECT_EQ(pieces.search_count, whole.search_count);
+  ASSERT_EQ(pieces.balls.size(), whole.balls.size());
+  EXPECT_EQ(std::memcmp(pieces.balls.data(), whole.balls.data(), whole.balls.size() * sizeof(kernels::Ball)),
+            0);
 }
 
 TEST(Adaptive, StopsAtACountWithTheLargest) {
