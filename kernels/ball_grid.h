@@ -251,7 +251,7 @@ class BallGrid {
                        first_entries_.view(),
                        entry_count_.view()};
       executor_.for_each_index(count, layer);
-      const std::uint32_t entries = executor_.download(View<const std::uint32_t>(entry_count_.view()))[0];
+      const std::uint32_t entries = executor_.download(View<const std::uint32_t>(entry_count_.view())).at(0);
       if (entries >= BallGridView::kInsideBit) {
         throw std::length_error("ball grid: more than 2^31 - 1 entries");
       }

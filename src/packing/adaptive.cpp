@@ -64,12 +64,28 @@ double most_spheres(const Mesh& mesh, const PackingLimits& limits, const Adaptiv
                               (kSphereVolume * smallest * smallest * smallest));
 }
 
-// Seconds for a facet to be indexed and for a sphere to be placed, on one thread of a CPU.
+// How many spheres there are going to be, within a factor of two on the models of docs/cuda.md: a share of
+// the volume beyond the wall, in units of the smallest sphere's, that falls as the radii spread.
+double expected_spheres(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options) {
+  constexpr double kShareOfEqual = 0.74, kShareOfWide = 0.05, kFall = 2.27;
+  constexpr double kSphereVolume = 4.18879;
+  const double smallest = limits.min_radius + limits.gap / 2;
+  const auto wanted = static_cast<double>(options.max_count);
+  if (!(smallest > 0)) return wanted;
+  const double volume = std::abs(signed_volume(mesh));
+  const double beyond_wall = std::max(volume - surface_area(mesh) * limits.wall, 0.05 * volume);
+  const double spread = (limits.max_radius + limits.gap / 2) / smallest;
+  const double share = std::max(kShareOfEqual * std::pow(spread, -kFall), kShareOfWide);
+  return std::min(wanted, share * beyond_wall / (kSphereVolume * smallest * smallest * smallest));
+}
+
+// Seconds for a facet to be indexed and for a sphere to be placed, on one thread of a CPU (docs/cuda.md tells
+// how they were measured).
 WorkEstimate estimate_work(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options) {
   constexpr double kSecondsPerFacet = 0.8e-6;
-  constexpr double kSecondsPerSphere = 300e-6;
+  constexpr double kSecondsPerSphere = 450e-6;
   const auto facets = static_cast<double>(mesh.triangles.size());
-  const double spheres = most_spheres(mesh, limits, options);
+  const double spheres = expected_spheres(mesh, limits, options);
   return {facets * kSecondsPerFacet + spheres * kSecondsPerSphere,
           facets * (sizeof(Triangle) + sizeof(Vec3f)) + spheres * sizeof(kernels::Ball)};
 }

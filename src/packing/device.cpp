@@ -11,15 +11,15 @@ namespace {
 
 using Kind = DeviceRequest::Kind;
 
-// The model by which `auto` decides; docs/cuda.md tells where the figures come from. None of them was
-// measured on a GPU yet.
-constexpr double kSecondsToStartCuda = 0.4;
-constexpr double kTransferBytesPerSecond = 4e9;
-constexpr double kDeviceInThreads = 60;
+// The device's side of the model by which `auto` decides: assumptions, pessimistic on purpose, until
+// bench_devices has run on a GPU (docs/cuda.md). The CPU's side is measured, and comes with the WorkEstimate.
+constexpr double kAssumedSecondsToStart = 0.4;          // driver, context, and code for the device
+constexpr double kAssumedTransferBytesPerSecond = 4e9;  // from memory that is not pinned
+constexpr double kAssumedThreadsOfADevice = 60;         // how many CPU threads do its work
 
 double seconds_on_device(const WorkEstimate& work) {
-  return kSecondsToStartCuda + work.transfer_bytes / kTransferBytesPerSecond +
-         work.thread_seconds / kDeviceInThreads;
+  return kAssumedSecondsToStart + work.transfer_bytes / kAssumedTransferBytesPerSecond +
+         work.thread_seconds / kAssumedThreadsOfADevice;
 }
 
 std::string name_of(const kernels::CudaDevice& device, int index) {
@@ -35,8 +35,8 @@ DeviceChoice choose_automatically(const WorkEstimate& work) {
   // Decided before a driver is started for it.
   const double on_cpu = work.thread_seconds / tbb::this_task_arena::max_concurrency();
   const double on_cuda = seconds_on_device(work);
-  const std::string comparison =
-      fmt::format("about {:.2g} s on the CPU, {:.2g} s with CUDA, as estimated", on_cpu, on_cuda);
+  const std::string comparison = fmt::format(
+      "about {:.2g} s on the CPU by measured costs, {:.2g} s with CUDA by assumed ones", on_cpu, on_cuda);
   if (on_cpu <= on_cuda) return cpu_because(comparison);
   const kernels::CudaDevices found = kernels::find_cuda_devices();
   if (found.devices.empty()) return cpu_because("no CUDA device: " + found.problem);

@@ -62,14 +62,20 @@ kernels::HexagonalInput input_for(const Mesh& mesh, const PackingLimits& limits,
   return input;
 }
 
-// Seconds for a facet to be indexed and for a place to be tested, on one thread of a CPU (docs/cuda.md).
-WorkEstimate estimate_work(const kernels::HexagonalInput& input) {
+// Seconds for a facet to be indexed and for a place to be tested, on one thread of a CPU (docs/cuda.md tells
+// how they were measured).
+WorkEstimate estimate_work(const Mesh& mesh, const kernels::HexagonalInput& input) {
   constexpr double kSecondsPerFacet = 0.6e-6;
-  constexpr double kSecondsPerPlace = 0.5e-6;
+  constexpr double kSecondsPerPlace = 1.0e-6;
+  const double radius = input.parameters.lattice_radius;
   const auto facets = static_cast<double>(input.triangles.size());
-  const auto places = static_cast<double>(
-      kernels::make_hexagonal_lattice(input.box, input.parameters.lattice_radius).cell_count() *
+  const auto scheme = static_cast<double>(
+      kernels::make_hexagonal_lattice(input.box, radius).cell_count() *
       (kernels::kLatticePerCell + kernels::kIntersticesPerCell + kernels::kTetrahedralPerCell));
+  // Lattice spheres whose centres are within their radius and the wall of the surface give way to 61 each.
+  const double met =
+      surface_area(mesh) * (radius + input.parameters.wall) / (4 * std::sqrt(2.0) * radius * radius * radius);
+  const double places = scheme + kernels::kReplacements * std::min(met, scheme / 5);
   return {facets * kSecondsPerFacet + places * kSecondsPerPlace,
           facets * (sizeof(Triangle) + sizeof(Vec3f)) + places * sizeof(Sphere)};
 }
@@ -141,7 +147,7 @@ Packing pack_hexagonal(const Mesh& mesh, const PackingLimits& limits, Monitor& m
   };
   const auto on_cuda = [&](int index) { return kernels::pack_hexagonal_on_cuda(index, input); };
   Packing packing =
-      packing_of(run_on_device(device, estimate_work(input), monitor, use, on_cpu, on_cuda), limits);
+      packing_of(run_on_device(device, estimate_work(mesh, input), monitor, use, on_cpu, on_cuda), limits);
   packing.device = std::move(use);
   return packing;
 }

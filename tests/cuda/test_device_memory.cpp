@@ -1,12 +1,19 @@
 #include <cstdlib>
+#include <cstring>
+#include <functional>
 #include <string>
 
 #include "core/error.h"
+#include "kernels/adaptive_cuda.h"
+#include "kernels/exec_cpu.h"
 #include "kernels/hexagonal_cuda.h"
+#include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "packing/run_on_device.h"
 #include "tests/cuda/cuda_test.h"
 #include "tests/cuda/same_bits.h"
+#include "tests/support/adaptive_input.h"
+#include "tests/support/hexagonal_input.h"
 #include "tests/support/shapes.h"
 
 // Packing on devices that are too small for the job, which only a simulated device can be made to be: each
@@ -42,25 +49,71 @@ class NoticeBoard : public Monitor {
   std::string text_;
 };
 
+// What the torus needs: strips of it with their index, and its whole index with the first cells.
+constexpr std::size_t kLeastForHexagonal = 200 << 10;
+constexpr std::size_t kLeastForAdaptive = 900 << 10;
+
 // Enough work for the model to choose the device.
 constexpr WorkEstimate kMuchWork{1e6, 0};
 
-TEST_F(DeviceMemory, GivesTheSamePackingOrSaysWhyNot) {
-  Monitor monitor;
-  const Packing expected = pack_hexagonal(torus_, limits_, monitor, {.kind = Kind::cpu});
-  ASSERT_GT(expected.spheres.size(), 1500U);
-  constexpr std::size_t kTooLittle = 150 << 10;
-  if (bytes_ > kTooLittle) {
-    test::expect_same_packing(pack_hexagonal(torus_, limits_, monitor, {.kind = Kind::cuda}), expected);
-    return;
-  }
+// The same packing if the device has `least` bytes or more, else a refusal that names the memory.
+void expect_same_or_refused(std::size_t bytes, std::size_t least, const Packing& expected,
+                            const std::function<Packing()>& pack) {
   try {
-    pack_hexagonal(torus_, limits_, monitor, {.kind = Kind::cuda});
-    FAIL() << "packed in " << bytes_ << " bytes";
+    const Packing packing = pack();
+    EXPECT_GE(bytes, least) << "less memory is enough by now: test with less";
+    test::expect_same_packing(packing, expected);
   } catch (const FailureError& error) {
+    EXPECT_LT(bytes, least) << error.what();
     EXPECT_NE(std::string(error.what()).find("memory"), std::string::npos) << error.what();
     EXPECT_NE(error.hint().find("--device cpu"), std::string::npos) << error.hint();
   }
+}
+
+TEST_F(DeviceMemory, HexagonalPackingIsTheSameOrSaysWhyNot) {
+  Monitor monitor;
+  const Packing expected = pack_hexagonal(torus_, limits_, monitor, {.kind = Kind::cpu});
+  ASSERT_GT(expected.spheres.size(), 1500U);
+  expect_same_or_refused(bytes_, kLeastForHexagonal, expected,
+                         [&] { return pack_hexagonal(torus_, limits_, monitor, {.kind = Kind::cuda}); });
+}
+
+TEST_F(DeviceMemory, HexagonalPackingTakesStripsWhereTheIndexDoesNotFit) {
+  if (bytes_ < kLeastForHexagonal) return;  // refused, as the test before shows
+  const kernels::HexagonalInput input = test::hexagonal_input(torus_, 0.5);
+  const kernels::HexagonalResult whole = kernels::pack_hexagonal(kernels::TbbExecutor{}, input);
+  const kernels::HexagonalResult result = kernels::pack_hexagonal_on_cuda(0, input);
+  test::expect_same_spheres(result.spheres, whole.spheres);
+  EXPECT_EQ(result.state_counts, whole.state_counts);
+  EXPECT_EQ(result.strips > 1, bytes_ < whole.index_bytes + torus_.triangles.size() * sizeof(kernels::Facet))
+      << result.strips << " strips";
+}
+
+TEST_F(DeviceMemory, AdaptivePackingIsTheSameOrSaysWhyNot) {
+  Monitor monitor;
+  const PackingLimits limits{0.1, 0.05, 0.3, 0.8};
+  const AdaptiveOptions options{.max_count = 120};
+  const Packing expected = pack_adaptive(torus_, limits, options, monitor, {.kind = Kind::cpu});
+  ASSERT_EQ(expected.spheres.size(), 120U);
+  expect_same_or_refused(bytes_, kLeastForAdaptive, expected, [&] {
+    return pack_adaptive(torus_, limits, options, monitor, {.kind = Kind::cuda});
+  });
+}
+
+// Not all cells, searches and places at once, which need more than these devices have.
+TEST_F(DeviceMemory, AdaptivePackingWorksInPieces) {
+  if (bytes_ < kLeastForAdaptive) return;  // refused, as the test before shows
+  kernels::AdaptiveInput input = test::adaptive_input(torus_);
+  input.parameters.min_radius = 0.35;
+  input.parameters.max_radius = 0.6;
+  input.parameters.max_count = 150;
+  const kernels::AdaptiveResult whole = kernels::pack_adaptive(kernels::TbbExecutor{}, input);
+  const kernels::AdaptiveResult result = kernels::pack_adaptive_on_cuda(0, input);
+  EXPECT_LT(result.most_at_a_time, 4000U);
+  EXPECT_GT(result.search_count, result.most_at_a_time);
+  ASSERT_EQ(result.balls.size(), whole.balls.size());
+  EXPECT_EQ(std::memcmp(result.balls.data(), whole.balls.data(), whole.balls.size() * sizeof(kernels::Ball)),
+            0);
 }
 
 TEST_F(DeviceMemory, AutomaticChoiceFallsBackToTheCpuAndSaysSo) {
