@@ -5,9 +5,14 @@ if(AERATE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${AERATE_CCACHE}")
 endif()
 
+# -std=c++20, not gnu++20. A property of the targets made from here on: consumers of an interface target would not
+# take it over.
+if(NOT DEFINED CMAKE_CXX_EXTENSIONS)
+  set(CMAKE_CXX_EXTENSIONS OFF)
+endif()
+
 add_library(aerate_options INTERFACE)
 target_compile_features(aerate_options INTERFACE cxx_std_20)
-set_target_properties(aerate_options PROPERTIES CXX_EXTENSIONS OFF)
 target_include_directories(aerate_options INTERFACE
   "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/src")
 
@@ -18,8 +23,8 @@ target_compile_options(aerate_options INTERFACE
 
 if(AERATE_SANITIZE)
   target_compile_options(aerate_options INTERFACE
-    $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined -fno-omit-frame-pointer>
-    $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-fsanitize=address,-fsanitize=undefined,-fno-omit-frame-pointer>)
+    $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer>
+    $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-fsanitize=address,-fsanitize=undefined,-fno-sanitize-recover=undefined,-fno-omit-frame-pointer>)
   target_link_options(aerate_options INTERFACE -fsanitize=address,undefined)
 endif()
 
