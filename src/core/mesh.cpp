@@ -20,10 +20,13 @@ VolumeMoments volume_moments(const Mesh& mesh) {
   if (mesh.triangles.empty()) return {};
   // Tetrahedra from the box centre rather than from the origin: a model far from the origin keeps its digits.
   const Box3f box = bounding_box(mesh);
-  const Vec3d origin = (to_double(box.lower) + to_double(box.upper)) * 0.5;
+  return volume_moments(mesh, mesh.triangles, (to_double(box.lower) + to_double(box.upper)) * 0.5);
+}
+
+VolumeMoments volume_moments(const Mesh& mesh, std::span<const Triangle> triangles, Vec3d origin) {
   double volume_times_6 = 0;
   Vec3d moment_times_24{0, 0, 0};
-  for (const Triangle& triangle : mesh.triangles) {
+  for (const Triangle& triangle : triangles) {
     const Vec3d a = to_double(mesh.positions[triangle[0]]) - origin;
     const Vec3d b = to_double(mesh.positions[triangle[1]]) - origin;
     const Vec3d c = to_double(mesh.positions[triangle[2]]) - origin;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernels/vec.h"
@@ -36,5 +37,9 @@ struct VolumeMoments {
   Vec3d first_moment{0, 0, 0};
 };
 VolumeMoments volume_moments(const Mesh& mesh);
+
+// The same for some triangles of a mesh, as tetrahedra from `origin`: a sum over parts of a closed mesh gives
+// the whole if all have the same origin.
+VolumeMoments volume_moments(const Mesh& mesh, std::span<const Triangle> triangles, Vec3d origin);
 
 }  // namespace aerate

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
+#include <cstdint>
 #include <limits>
-#include <numbers>
+#include <optional>
 #include <span>
-#include <string>
-#include <utility>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 #include <vector>
 
-#include "core/error.h"
-#include "kernels/point_triangle.h"
-#include "pipeline/shell_topology.h"
+#include "pipeline/check_failure.h"
+#include "pipeline/check_voids.h"
+#include "pipeline/polled_loop.h"
 
 namespace aerate {
 namespace {
@@ -20,35 +20,47 @@ namespace {
 // Sums of fp64 terms over millions of triangles: relative to the volume that they add up to.
 constexpr double kSummationError = 1e-9;
 
-// Distances of fp32 vertices computed in fp64, relative to the radius.
-constexpr double kDistanceError = 1e-9;
-
 // Distances between fp64 balls and fp32 triangles of at most kilometres, mm.
 constexpr double kLimitError = 1e-7;
 
-template <typename... Arguments>
-[[noreturn]] void fail(fmt::format_string<Arguments...> why, Arguments&&... arguments) {
-  throw FailureError("the result failed its check, so it was not kept: " +
-                         fmt::format(why, std::forward<Arguments>(arguments)...),
-                     "please report this with the model and the options");
+// Triangles that are compared between two questions to the monitor.
+constexpr std::size_t kTrianglesPerPiece = std::size_t{1} << 22;
+
+// Triangles whose terms are added up in one go; the sums of blocks are then added in their order, so that a
+// volume does not depend on threads.
+constexpr std::size_t kTrianglesPerSum = std::size_t{1} << 14;
+
+bool has_same_corners(const Mesh& a, const Mesh& b, std::size_t triangle) {
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    if (!(a.positions[a.triangles[triangle][corner]] == b.positions[b.triangles[triangle][corner]]))
+      return false;
+  }
+  return true;
 }
 
-double ball_volume(double radius) {
-  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+// The first of the triangles `first`..`last`-1 that differs; `last` if none does.
+std::size_t find_difference(const Mesh& a, const Mesh& b, std::size_t first, std::size_t last) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(first, last), last,
+      [&](const tbb::blocked_range<std::size_t>& range, std::size_t found) {
+        std::size_t i = range.begin();
+        while (i != range.end() && has_same_corners(a, b, i)) ++i;
+        return i == range.end() ? found : std::min(found, i);
+      },
+      [](std::size_t x, std::size_t y) { return std::min(x, y); });
 }
 
 // Corner by corner: the vertices may be numbered differently.
-void require_same_triangles(const Mesh& read_back, const Mesh& reference, std::size_t count,
-                            const char* what) {
-  if (read_back.triangles.size() < count || reference.triangles.size() < count)
-    fail("it has {} triangles instead of {}", read_back.triangles.size(), count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      if (!(read_back.positions[read_back.triangles[i][corner]] ==
-            reference.positions[reference.triangles[i][corner]])) {
-        fail("triangle {} is not the one of {}", i, what);
-      }
-    }
+void require_same_triangles(const Mesh& read_back, const Mesh& reference, const char* what,
+                            Monitor& monitor) {
+  const std::size_t count = reference.triangles.size();
+  if (read_back.triangles.size() < count)
+    fail_check("it has {} triangles instead of {}", read_back.triangles.size(), count);
+  for (std::size_t first = 0; first < count; first += kTrianglesPerPiece) {
+    monitor.check_interrupted();
+    const std::size_t last = std::min(count, first + kTrianglesPerPiece);
+    const std::size_t different = find_difference(read_back, reference, first, last);
+    if (different != last) fail_check("triangle {} is not the one of {}", different, what);
   }
 }
 
@@ -61,111 +73,42 @@ Mesh first_triangles(const Mesh& mesh, std::size_t count) {
   return part;
 }
 
-// One void as it was written.
-struct MeasuredVoid {
-  Sphere ball;  // round the planned centre, holding every vertex
+double volume_of(const Mesh& mesh, Monitor& monitor) {
+  const Box3f box = bounding_box(mesh);
+  const Vec3d origin = (to_double(box.lower) + to_double(box.upper)) * 0.5;
+  const std::size_t count = mesh.triangles.size();
+  std::vector<double> volumes((count + kTrianglesPerSum - 1) / kTrianglesPerSum);
+  for_each_polled(volumes.size(), kTrianglesPerPiece / kTrianglesPerSum, monitor, [&](std::size_t block) {
+    const std::size_t first = block * kTrianglesPerSum;
+    const auto triangles =
+        std::span(mesh.triangles).subspan(first, std::min(kTrianglesPerSum, count - first));
+    volumes[block] = volume_moments(mesh, triangles, origin).volume;
+  });
   double volume = 0;
-  double depth = 0;  // how far the surface stays inside the planned ball at most
-  Vec3d first_moment{0, 0, 0};
-};
-
-MeasuredVoid measure_void(const Mesh& mesh, std::span<const Triangle> triangles, const Sphere& planned) {
-  MeasuredVoid measured;
-  double farthest_squared = 0;
-  double nearest_squared = std::numeric_limits<double>::infinity();
-  double volume_times_6 = 0;
-  Vec3d moment_times_24{0, 0, 0};
-  for (const Triangle& t : triangles) {
-    const kernels::Facet facet{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-    const Vec3d a = to_double(facet.a) - planned.centre;
-    const Vec3d b = to_double(facet.b) - planned.centre;
-    const Vec3d c = to_double(facet.c) - planned.centre;
-    farthest_squared = std::max({farthest_squared, length_squared(a), length_squared(b), length_squared(c)});
-    nearest_squared = std::min(nearest_squared, kernels::distance_squared_to_facet(planned.centre, facet));
-    // Inward triangles: the determinant is negative.
-    const double determinant = -dot(a, cross(b, c));
-    volume_times_6 += determinant;
-    moment_times_24 = moment_times_24 + (a + b + c) * determinant;
-  }
-  measured.ball = {planned.centre, std::sqrt(farthest_squared), planned.kind};
-  measured.volume = volume_times_6 / 6.0;
-  measured.depth = planned.radius - std::sqrt(nearest_squared);
-  measured.first_moment = moment_times_24 * (1.0 / 24.0) + planned.centre * measured.volume;
-  return measured;
+  for (const double block : volumes) volume += block;
+  return volume;
 }
 
-// Vertices of the read-back mesh are numbered in order of first use, so a shell that shares none with those
-// before it uses exactly the next ones.
-std::uint32_t require_own_vertices(std::span<const Triangle> triangles, std::uint32_t next,
-                                   std::size_t index) {
-  std::uint32_t end = next;
-  for (const Triangle& t : triangles) {
-    for (const std::uint32_t vertex : t) {
-      if (vertex < next) fail("void {} touches another surface", index);
-      end = std::max(end, vertex + 1);
-    }
-  }
-  return end;
+// The same triangles with the same coordinates have the same edges: what inspection found out about the model
+// holds for the outer part, and the model may stand for it.
+void require_kept_outer(const Mesh& read_back, const ExpectedOutput& expected, Monitor& monitor) {
+  const std::size_t count = expected.model.triangles.size();
+  if (expected.solid.outer_triangle_count != count)
+    fail_check("{} of its triangles are outside, the model has {}", expected.solid.outer_triangle_count,
+               count);
+  require_same_triangles(read_back, expected.model, "the model", monitor);
+  if (!expected.inspection.closed()) fail_check("the outer surface is not closed");
 }
 
-std::vector<MeasuredVoid> measure_voids(const Mesh& mesh, const ExpectedOutput& expected) {
-  const auto& shells = expected.solid.void_shells;
-  if (shells.size() != expected.plan.spheres.size())
-    fail("{} voids were planned and {} made", expected.plan.spheres.size(), shells.size());
-
-  std::uint32_t next_vertex = 0;
-  for (std::size_t i = 0; i < expected.solid.outer_triangle_count; ++i) {
-    const Triangle& t = mesh.triangles[i];
-    next_vertex = std::max({next_vertex, t[0] + 1, t[1] + 1, t[2] + 1});
-  }
-  std::size_t next_triangle = expected.solid.outer_triangle_count;
-  std::vector<MeasuredVoid> voids;
-  voids.reserve(shells.size());
-  for (std::size_t i = 0; i < shells.size(); ++i) {
-    if (shells[i].first_triangle != next_triangle) fail("void {} is not where it belongs", i);
-    next_triangle += shells[i].triangle_count;
-    if (next_triangle > mesh.triangles.size()) fail("the triangles of void {} are missing", i);
-    const std::span<const Triangle> triangles =
-        std::span(mesh.triangles).subspan(shells[i].first_triangle, shells[i].triangle_count);
-    next_vertex = require_own_vertices(triangles, next_vertex, i);
-    if (const auto flaw = flaw_of_sphere_shell(triangles)) fail("the surface of void {}: {}", i, *flaw);
-
-    const Sphere& planned = expected.plan.spheres[i];
-    const MeasuredVoid measured = measure_void(mesh, triangles, planned);
-    const double slack = kDistanceError * planned.radius;
-    if (measured.volume <= 0) fail("void {} is not oriented inward", i);
-    if (measured.ball.radius > planned.radius + slack)
-      fail("void {} has radius {:.9g} mm, planned were {:.9g} mm", i, measured.ball.radius, planned.radius);
-    if (measured.depth > expected.tolerance + slack)
-      fail("void {} stays {:.4g} mm inside its ball, the tolerance is {:.4g} mm", i, measured.depth,
-           expected.tolerance);
-    const double least = ball_volume(std::max(0.0, planned.radius - expected.tolerance));
-    const double most = ball_volume(planned.radius);
-    if (measured.volume < least * (1 - kSummationError) || measured.volume > most * (1 + kSummationError))
-      fail("void {} has {:.6g} mm3, planned were {:.6g} mm3", i, measured.volume, most);
-    voids.push_back(measured);
-  }
-  if (next_triangle != mesh.triangles.size())
-    fail("it has {} triangles too many", mesh.triangles.size() - next_triangle);
-  return voids;
-}
-
-void require_sound_outer(const Mesh& outer, const ExpectedOutput& expected) {
-  if (expected.surface == OuterSurface::kept) {
-    // The same triangles with the same coordinates have the same edges: what inspection found out about the
-    // model holds for the outer part.
-    require_same_triangles(outer, expected.model, expected.model.triangles.size(), "the model");
-    if (!expected.inspection.closed()) fail("the outer surface is not closed");
-    return;
-  }
+void require_sound_outer(const Mesh& outer, const Inspection& model) {
   const Inspection inspection = inspect(outer);
-  if (inspection.open_edges > 0) fail("the outer surface has {} open edges", inspection.open_edges);
+  if (inspection.open_edges > 0) fail_check("the outer surface has {} open edges", inspection.open_edges);
   if (inspection.misoriented_edges > 0)
-    fail("the outer surface has {} misoriented edges", inspection.misoriented_edges);
-  if (inspection.non_manifold_edges > expected.inspection.non_manifold_edges)
-    fail("the outer surface has {} non-manifold edges, the model has {}", inspection.non_manifold_edges,
-         expected.inspection.non_manifold_edges);
-  if (inspection.volume <= 0) fail("the outer surface is inside out");
+    fail_check("the outer surface has {} misoriented edges", inspection.misoriented_edges);
+  if (inspection.non_manifold_edges > model.non_manifold_edges)
+    fail_check("the outer surface has {} non-manifold edges, the model has {}", inspection.non_manifold_edges,
+               model.non_manifold_edges);
+  if (inspection.volume <= 0) fail_check("the outer surface is inside out");
 }
 
 // The wall and the gap hold round the measured balls, and these lie where the model is solid once. The latter
@@ -182,14 +125,14 @@ Clearances measure_limits(const Mesh& outer, const std::vector<Sphere>& balls,
     measured.limits = written;
     const Packing verified = verify_packing(outer, std::move(measured));
     if (verified.spheres.size() != balls.size() || verified.statistics.shrunk_by_verification > 0)
-      fail("{} voids lie where the model is not solid once",
-           verified.statistics.dropped_by_verification + verified.statistics.shrunk_by_verification);
+      fail_check("{} voids lie where the model is not solid once",
+                 verified.statistics.dropped_by_verification + verified.statistics.shrunk_by_verification);
   }
   const Clearances clearances = measure_clearances(outer, balls);
   if (clearances.wall < limits.wall - kLimitError)
-    fail("the wall is {:.9g} mm, the limit {:.9g} mm", clearances.wall, limits.wall);
+    fail_check("the wall is {:.9g} mm, the limit {:.9g} mm", clearances.wall, limits.wall);
   if (clearances.gap && *clearances.gap < limits.gap - kLimitError)
-    fail("the gap is {:.9g} mm, the limit {:.9g} mm", *clearances.gap, limits.gap);
+    fail_check("the gap is {:.9g} mm, the limit {:.9g} mm", *clearances.gap, limits.gap);
   return clearances;
 }
 
@@ -198,50 +141,73 @@ std::optional<Vec3d> centre_of_mass(double volume, Vec3d first_moment, const Ins
   return first_moment * (1.0 / volume);
 }
 
+// Sums and extremes over the voids.
+struct VoidTotals {
+  double volume = 0;
+  Vec3d first_moment{0, 0, 0};
+  double smallest_radius = std::numeric_limits<double>::infinity();
+  double largest_radius = 0;
+  double depth = 0;
+  std::vector<Sphere> balls;
+};
+
+VoidTotals add_up(const std::vector<MeasuredVoid>& voids) {
+  VoidTotals totals;
+  totals.balls.reserve(voids.size());
+  for (const MeasuredVoid& measured : voids) {
+    totals.volume += measured.volume;
+    totals.first_moment = totals.first_moment + measured.first_moment;
+    totals.smallest_radius = std::min(totals.smallest_radius, measured.ball.radius);
+    totals.largest_radius = std::max(totals.largest_radius, measured.ball.radius);
+    totals.depth = std::max(totals.depth, measured.depth);
+    totals.balls.push_back(measured.ball);
+  }
+  return totals;
+}
+
 }  // namespace
 
-OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected) {
+OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected, Monitor& monitor) {
   const Solid& solid = expected.solid;
-  require_same_triangles(read_back, solid.mesh, solid.mesh.triangles.size(), "the result");
-  const Mesh outer = first_triangles(read_back, solid.outer_triangle_count);
-  require_sound_outer(outer, expected);
-  const std::vector<MeasuredVoid> voids = measure_voids(read_back, expected);
-
-  std::vector<Sphere> balls;
-  balls.reserve(voids.size());
-  for (const MeasuredVoid& measured : voids) balls.push_back(measured.ball);
+  require_same_triangles(read_back, solid.mesh, "the result", monitor);
+  std::optional<Mesh> remeshed;
+  if (expected.surface == OuterSurface::kept) {
+    require_kept_outer(read_back, expected, monitor);
+  } else {
+    remeshed = first_triangles(read_back, solid.outer_triangle_count);
+    require_sound_outer(*remeshed, expected.inspection);
+  }
+  const Mesh& outer = remeshed ? *remeshed : expected.model;
+  const VoidTotals voids = add_up(check_voids(read_back, solid, expected.plan, expected.tolerance, monitor));
+  monitor.check_interrupted();
 
   OutputFacts facts;
   facts.triangle_count = read_back.triangles.size();
-  facts.outer_triangle_count = outer.triangles.size();
+  facts.outer_triangle_count = solid.outer_triangle_count;
   facts.void_triangle_count = facts.triangle_count - facts.outer_triangle_count;
-  facts.void_count = voids.size();
-  facts.smallest_radius = std::numeric_limits<double>::infinity();
-  Vec3d removed_moment{0, 0, 0};
-  for (const MeasuredVoid& measured : voids) {
-    facts.volume_removed += measured.volume;
-    removed_moment = removed_moment + measured.first_moment;
-    facts.smallest_radius = std::min(facts.smallest_radius, measured.ball.radius);
-    facts.largest_radius = std::max(facts.largest_radius, measured.ball.radius);
-    facts.void_deviation = std::max(facts.void_deviation, measured.depth);
-  }
-  facts.clearances = measure_limits(outer, balls, expected);
+  facts.void_count = voids.balls.size();
+  facts.volume_removed = voids.volume;
+  facts.smallest_radius = voids.smallest_radius;
+  facts.largest_radius = voids.largest_radius;
+  facts.void_deviation = voids.depth;
+  facts.clearances = measure_limits(outer, voids.balls, expected);
+  monitor.check_interrupted();
 
   const VolumeMoments outer_moments = volume_moments(outer);
-  const VolumeMoments whole_moments = volume_moments(read_back);
-  const double difference = outer_moments.volume - facts.volume_removed - whole_moments.volume;
+  const double whole_volume = volume_of(read_back, monitor);
+  const double difference = outer_moments.volume - voids.volume - whole_volume;
   if (std::abs(difference) > kSummationError * outer_moments.volume)
-    fail("the model less its voids has {:.9g} mm3, the result {:.9g} mm3",
-         outer_moments.volume - facts.volume_removed, whole_moments.volume);
+    fail_check("the model less its voids has {:.9g} mm3, the result {:.9g} mm3",
+               outer_moments.volume - voids.volume, whole_volume);
 
   // With overlapping parts the signed volume counts the overlap twice; a slicer fills it once.
   const bool overlapping = expected.inspection.parts_overlap();
   facts.volume_before = overlapping ? expected.inspection.filled_volume : outer_moments.volume;
-  facts.volume_after = overlapping ? facts.volume_before - facts.volume_removed : whole_moments.volume;
+  facts.volume_after = overlapping ? facts.volume_before - voids.volume : whole_volume;
   facts.centre_of_mass_before =
       centre_of_mass(outer_moments.volume, outer_moments.first_moment, expected.inspection);
   facts.centre_of_mass_after =
-      centre_of_mass(outer_moments.volume - facts.volume_removed, outer_moments.first_moment - removed_moment,
+      centre_of_mass(outer_moments.volume - voids.volume, outer_moments.first_moment - voids.first_moment,
                      expected.inspection);
   return facts;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/mesh.h"
+#include "core/monitor.h"
 #include "core/packing.h"
 #include "core/solid.h"
 #include "core/void_plan.h"
@@ -20,17 +21,16 @@ struct ExpectedOutput {
   OuterSurface surface = OuterSurface::kept;
 };
 
-// Checks and measures a mesh that was read back from disk:
+// Checks and measures a mesh that was read back from disk, its vertices welded and numbered in order of first
+// use:
 //   - every triangle is the one that was written, coordinate for coordinate; if the surface was kept, the
-//   first
-//     ones are the model's;
+//     first ones are the model's;
 //   - the outer part is closed, without misoriented edges, with no more non-manifold edges than the model;
-//   - each void is one shell of its own: closed, 2-manifold, a topological sphere, inward, with no vertex of
-//     another shell;
-//   - each void lies within [-tolerance, 0] of its planned ball, and so does its volume;
+//   - each void is a shell of its own as planned (check_voids.h);
 //   - the balls round the voids keep the wall and the gap, where the winding number of the outer part is 1;
 //   - the volumes add up.
-// Throws FailureError that says which of these does not hold.
-OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected);
+// On all threads; the facts are the same for any number of them. Throws FailureError that says which of these
+// does not hold; InterruptedError.
+OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected, Monitor& monitor);
 
 }  // namespace aerate

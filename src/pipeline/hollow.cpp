@@ -103,15 +103,16 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   log.check_interrupted();
 
   log.stage("check");
-  const Mesh written = read_back(pending.file().path(), format);
-  log.check_interrupted();
-  report.output = check_output(written, {.solid = solid,
-                                         .model = model.mesh,
-                                         .inspection = model.inspection,
-                                         .plan = plan,
-                                         .limits = request.limits,
-                                         .tolerance = report.tolerance_used,
-                                         .surface = report.surface});
+  const Mesh written = read_back(pending.file().path(), format, log);
+  report.output = check_output(written,
+                               {.solid = solid,
+                                .model = model.mesh,
+                                .inspection = model.inspection,
+                                .plan = plan,
+                                .limits = request.limits,
+                                .tolerance = report.tolerance_used,
+                                .surface = report.surface},
+                               log);
   report.output.path = options.output;
   report.output.file_bytes = std::filesystem::file_size(pending.file().path());
   report.balance = balance_of(model.mesh, report.output);

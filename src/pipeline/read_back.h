@@ -3,14 +3,15 @@
 #include <filesystem>
 
 #include "core/mesh.h"
+#include "core/monitor.h"
 #include "printing/write.h"
 
 namespace aerate {
 
 // A mesh that `write_mesh` wrote, read from its file: triangles in the order of the file, vertices welded and
-// numbered in order of first use, coordinates to the last bit. STL and PLY are read as any model is. OBJ is
-// read here, since assimp rounds decimal numbers by up to a unit in the last place. Throws InputError or
-// FailureError for a file that is not as it was written.
-Mesh read_back(const std::filesystem::path& path, MeshFormat format);
+// numbered in order of first use, coordinates to the last bit. Reads what our writers write and nothing else,
+// a block at a time: assimp would hold several times the size of the file, and rounds decimals. Throws
+// FailureError for a file that is not as it was written; InterruptedError.
+Mesh read_back(const std::filesystem::path& path, MeshFormat format, Monitor& monitor);
 
 }  // namespace aerate

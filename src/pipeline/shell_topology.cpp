@@ -3,81 +3,109 @@
 #include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
-#include <numeric>
-#include <utility>
 #include <vector>
 
 namespace aerate {
 namespace {
 
-std::uint64_t directed_edge(std::uint32_t from, std::uint32_t to) {
-  return (static_cast<std::uint64_t>(from) << 32) | to;
-}
+constexpr std::uint32_t kNone = 0xffffffffu;
 
-// Number of sets that the edges join the vertices 0..vertex_count-1 into.
-std::size_t count_components(std::span<const std::array<std::uint32_t, 3>> triangles,
-                             std::size_t vertex_count) {
-  std::vector<std::uint32_t> parent(vertex_count);
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root_of = [&](std::uint32_t vertex) {
-    while (parent[vertex] != vertex) vertex = parent[vertex] = parent[parent[vertex]];
-    return vertex;
+// The directed edges of some triangles; edge 3 t + i runs from corner i of triangle t to the next one. A CSR
+// over the vertices that edges begin at, numbered from the lowest.
+class DirectedEdges {
+ public:
+  explicit DirectedEdges(std::span<const Triangle> triangles) : triangles_(triangles) {
+    std::uint32_t highest = 0;
+    for (const Triangle& t : triangles) {
+      lowest_ = std::min({lowest_, t[0], t[1], t[2]});
+      highest = std::max({highest, t[0], t[1], t[2]});
+    }
+    offsets_.resize(std::size_t{highest} - lowest_ + 2);
+    for (const Triangle& t : triangles) {
+      for (const std::uint32_t vertex : t) ++offsets_[vertex - lowest_ + 1];
+    }
+    for (std::size_t i = 1; i < offsets_.size(); ++i) {
+      if (offsets_[i] > 0) ++vertex_count_;
+      offsets_[i] += offsets_[i - 1];
+    }
+    edges_.resize(3 * triangles.size());
+    std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) edges_[next[start_of(e) - lowest_]++] = e;
+  }
+
+  std::size_t vertex_count() const { return vertex_count_; }
+  std::uint32_t start_of(std::uint32_t edge) const { return triangles_[edge / 3][edge % 3]; }
+  std::uint32_t end_of(std::uint32_t edge) const { return triangles_[edge / 3][(edge % 3 + 1) % 3]; }
+
+  // The edges from one vertex to another: how many, and the last of them.
+  struct Found {
+    std::size_t count = 0;
+    std::uint32_t edge = kNone;
   };
-  std::size_t components = vertex_count;
-  for (const auto& triangle : triangles) {
-    for (const int corner : {1, 2}) {
-      const std::uint32_t a = root_of(triangle[0]);
-      const std::uint32_t b = root_of(triangle[static_cast<std::size_t>(corner)]);
-      if (a == b) continue;
-      parent[std::max(a, b)] = std::min(a, b);
-      --components;
+  Found find(std::uint32_t from, std::uint32_t to) const {
+    Found found;
+    for (std::uint32_t i = offsets_[from - lowest_]; i != offsets_[from - lowest_ + 1]; ++i) {
+      if (end_of(edges_[i]) != to) continue;
+      ++found.count;
+      found.edge = edges_[i];
+    }
+    return found;
+  }
+
+ private:
+  std::span<const Triangle> triangles_;
+  std::uint32_t lowest_ = kNone;
+  std::size_t vertex_count_ = 0;
+  std::vector<std::uint32_t> offsets_;
+  std::vector<std::uint32_t> edges_;
+};
+
+// Number of triangles that can be reached from the first one across edges.
+std::size_t count_connected(const std::vector<std::uint32_t>& twins) {
+  std::vector<bool> is_reached(twins.size() / 3);
+  std::vector<std::uint32_t> waiting{0};
+  is_reached[0] = true;
+  std::size_t count = 0;
+  while (!waiting.empty()) {
+    const std::uint32_t triangle = waiting.back();
+    waiting.pop_back();
+    ++count;
+    for (std::uint32_t edge = 3 * triangle; edge < 3 * triangle + 3; ++edge) {
+      const std::uint32_t neighbour = twins[edge] / 3;
+      if (is_reached[neighbour]) continue;
+      is_reached[neighbour] = true;
+      waiting.push_back(neighbour);
     }
   }
-  return components;
+  return count;
 }
 
 }  // namespace
 
 std::optional<std::string> flaw_of_sphere_shell(std::span<const Triangle> triangles) {
   if (triangles.empty()) return "it has no triangles";
-
-  std::vector<std::uint32_t> vertices;
-  vertices.reserve(3 * triangles.size());
-  for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-
-  std::vector<Triangle> local(triangles.begin(), triangles.end());
-  for (Triangle& t : local) {
-    for (std::uint32_t& vertex : t) {
-      vertex = static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
-                                          vertices.begin());
-    }
+  for (const Triangle& t : triangles) {
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return "a triangle uses a vertex twice";
   }
 
   // Closed, oriented and 2-manifold along its edges: each is run along exactly once in either direction.
-  std::vector<std::uint64_t> forward;
-  std::vector<std::uint64_t> backward;
-  forward.reserve(3 * local.size());
-  backward.reserve(3 * local.size());
-  for (const Triangle& t : local) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = t[i];
-      const std::uint32_t to = t[(i + 1) % 3];
-      if (from == to) return "a triangle uses a vertex twice";
-      forward.push_back(directed_edge(from, to));
-      backward.push_back(directed_edge(to, from));
-    }
+  const DirectedEdges edges(triangles);
+  std::vector<std::uint32_t> twins(3 * triangles.size());
+  bool is_open = false;
+  for (std::uint32_t e = 0; e < twins.size(); ++e) {
+    if (edges.find(edges.start_of(e), edges.end_of(e)).count > 1)
+      return "an edge has more than two triangles, or two that face opposite ways";
+    const DirectedEdges::Found twin = edges.find(edges.end_of(e), edges.start_of(e));
+    is_open = is_open || twin.count == 0;
+    twins[e] = twin.edge;
   }
-  std::sort(forward.begin(), forward.end());
-  std::sort(backward.begin(), backward.end());
-  if (std::adjacent_find(forward.begin(), forward.end()) != forward.end())
-    return "an edge has more than two triangles, or two that face opposite ways";
-  if (forward != backward) return "it is open";
+  if (is_open) return "it is open";
 
-  if (count_components(local, vertices.size()) != 1) return "it is more than one shell";
-  const auto euler = static_cast<std::ptrdiff_t>(vertices.size() + local.size()) -
-                     static_cast<std::ptrdiff_t>(forward.size() / 2);
+  // Connected across edges, not merely through vertices: then it is a sphere by Euler's formula, and no
+  // vertex pinches it, since each that did would make the sum less.
+  if (count_connected(twins) != triangles.size()) return "it is more than one shell";
+  const auto euler = static_cast<std::ptrdiff_t>(edges.vertex_count() + triangles.size()) -
+                     static_cast<std::ptrdiff_t>(twins.size() / 2);
   if (euler != 2) return fmt::format("its Euler characteristic is {} instead of 2", euler);
   return std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <tbb/global_control.h>
 #include <utility>
 #include <vector>
 
@@ -37,12 +38,18 @@ class CheckOutput : public testing::Test {
   }
 
   OutputFacts check(const Mesh& written) const {
-    return check_output(written, {.solid = solid_,
-                                  .model = model_,
-                                  .inspection = inspect(model_),
-                                  .plan = plan_,
-                                  .limits = limits_,
-                                  .tolerance = tolerance_});
+    Monitor silent;
+    return check(written, silent);
+  }
+  OutputFacts check(const Mesh& written, Monitor& monitor) const {
+    return check_output(written,
+                        {.solid = solid_,
+                         .model = model_,
+                         .inspection = inspect(model_),
+                         .plan = plan_,
+                         .limits = limits_,
+                         .tolerance = tolerance_},
+                        monitor);
   }
   OutputFacts check() const { return check(as_read_back(solid_.mesh)); }
   void expect_found(const std::string& said) const {
@@ -108,7 +115,7 @@ TEST_F(CheckOutput, FindsAnOpenVoid) {
 
 TEST_F(CheckOutput, FindsAnOutwardVoid) {
   for (Triangle& t : void_triangles(0)) std::swap(t[1], t[2]);
-  expect_found("void 0 is not oriented inward");
+  expect_found("void 0: it is not oriented inward");
 }
 
 TEST_F(CheckOutput, FindsATwistedTriangle) {
@@ -120,7 +127,7 @@ TEST_F(CheckOutput, FindsAVoidThatIsTooLarge) {
   const std::uint32_t vertex = void_triangles(0)[3][0];
   const Vec3d outward = to_double(solid_.mesh.positions[vertex]) - plan_.spheres[0].centre;
   solid_.mesh.positions[vertex] = to_float(plan_.spheres[0].centre + outward * 1.0001);
-  expect_found("void 0 has radius 4.000");
+  expect_found("void 0: it has radius 4.000");
 }
 
 TEST_F(CheckOutput, FindsAVoidThatIsTooSmall) {
@@ -160,6 +167,42 @@ TEST_F(CheckOutput, OverlappingPartsAreCountedOnce) {
   const OutputFacts facts = check();
   EXPECT_FALSE(facts.centre_of_mass_before);
   EXPECT_NEAR(facts.volume_before, 60 * 30 * 30, 60 * 30 * 30 * 0.01);
+}
+
+TEST_F(CheckOutput, FactsDoNotDependOnThreads) {
+  plan_.spheres.clear();
+  for (int i = 0; i < 400; ++i) {
+    const auto at = [](int k) { return 2.0 + 3.0 * k; };
+    plan_.spheres.push_back(
+        {{at(i % 8), at(i / 8 % 8), at(i / 64)}, 0.7 + 0.001 * (i % 99), SphereKind::lattice});
+  }
+  limits_ = {.wall = 0.5, .gap = 0.5, .min_radius = 0.5, .max_radius = 1};
+  Monitor silent;
+  solid_ = carve_keeping_surface(model_, plan_, {.tolerance = tolerance_}, silent);
+  const Mesh written = as_read_back(solid_.mesh);
+  const OutputFacts parallel = check(written);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const OutputFacts serial = check(written);
+  EXPECT_EQ(parallel.void_count, 400U);
+  EXPECT_EQ(parallel.volume_removed, serial.volume_removed);
+  EXPECT_EQ(parallel.volume_after, serial.volume_after);
+  EXPECT_EQ(parallel.clearances.gap, serial.clearances.gap);
+  EXPECT_EQ(parallel.void_deviation, serial.void_deviation);
+}
+
+TEST_F(CheckOutput, NamesTheFirstOfSeveralFaults) {
+  for (const std::size_t i : {1U, 0U}) {
+    for (Triangle& t : void_triangles(i)) std::swap(t[1], t[2]);
+  }
+  expect_found("void 0: it is not oriented inward");
+}
+
+TEST_F(CheckOutput, StopsWhenAskedTo) {
+  class Stopping final : public Monitor {
+   public:
+    void check_interrupted() override { throw InterruptedError(); }
+  } stopping;
+  EXPECT_THROW(check(as_read_back(solid_.mesh), stopping), InterruptedError);
 }
 
 }  // namespace

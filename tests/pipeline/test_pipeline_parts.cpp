@@ -8,14 +8,10 @@
 #include "pipeline/job_log.h"
 #include "pipeline/material_choice.h"
 #include "pipeline/memory.h"
-#include "pipeline/read_back.h"
 #include "pipeline/sphere_table.h"
 #include "pipeline/thread_limit.h"
 #include "printing/carve.h"
-#include "printing/write.h"
 #include "tests/support/caught.h"
-#include "tests/support/shapes.h"
-#include "tests/support/temporary_folder.h"
 
 namespace aerate {
 namespace {
@@ -100,30 +96,6 @@ TEST(SphereTable, HasOneLineForEachSphere) {
   Packing packing;
   packing.spheres = {{{1.5, -2, 0.1}, 3, SphereKind::tetrahedral}};
   EXPECT_EQ(sphere_table(packing, SphereFormat::csv), "x,y,z,radius,kind\n1.5,-2,0.1,3,tetrahedral\n");
-}
-
-TEST(ReadBack, EveryFormatGivesTheSameBitsAgain) {
-  const Mesh mesh = test::make_uv_sphere(1.0 / 3.0, 9, 11);  // coordinates that are no short decimals
-  const test::TemporaryFolder folder;
-  for (const char* name : {"a.stl", "a.obj", "a.ply"}) {
-    const auto path = folder.path() / name;
-    const MeshFormat format = mesh_format_of(path);
-    write_mesh(mesh, path, format);
-    const Mesh again = read_back(path, format);
-    ASSERT_EQ(again.triangles.size(), mesh.triangles.size()) << name;
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      for (std::size_t k = 0; k < 3; ++k)
-        ASSERT_EQ(again.positions[again.triangles[i][k]], mesh.positions[mesh.triangles[i][k]]) << name;
-    }
-  }
-}
-
-TEST(ReadBack, DamagedObjIsNotTakenForWhatWasWritten) {
-  const test::TemporaryFolder folder;
-  for (const char* text : {"v 0 0\n", "v 0 0 0\nf 1 1 2\n", "v 0 0 0\nf 0 1 1\n", "nonsense\n"}) {
-    const auto path = folder.write("a.obj", text);
-    EXPECT_THROW(read_back(path, MeshFormat::obj), FailureError) << text;
-  }
 }
 
 }  // namespace

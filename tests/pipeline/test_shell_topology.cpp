@@ -1,7 +1,11 @@
+#include <algorithm>
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "pipeline/shell_topology.h"
 #include "tests/support/caught.h"
@@ -50,12 +54,28 @@ TEST(ShellTopology, FindsEachFlaw) {
   expect_flaw(test::join(box, box), "more than one shell");
   expect_flaw(test::make_torus(3, 1, 12, 8), "Euler characteristic is 0");
 
-  // Two boxes that share a vertex.
+  // Two boxes that share a vertex, and two that share opposite ones, whose Euler characteristic is 2.
   Mesh pinched = test::join(box, box);
-  for (Triangle& t : pinched.triangles) {
-    for (std::uint32_t& vertex : t) vertex = vertex == 8 ? 7 : vertex;
-  }
-  expect_flaw(pinched, "Euler characteristic is 3");
+  const auto join_vertices = [&](std::uint32_t kept, std::uint32_t gone) {
+    for (Triangle& t : pinched.triangles) std::replace(t.begin(), t.end(), gone, kept);
+  };
+  join_vertices(7, 8);
+  expect_flaw(pinched, "more than one shell");
+  join_vertices(0, 15);
+  expect_flaw(pinched, "more than one shell");
+}
+
+TEST(ShellTopology, FindsASphereThatTouchesItself) {
+  // Poles of a sphere made one vertex.
+  Mesh sphere = test::make_uv_sphere(1, 8, 12);
+  const auto by_height = [&](std::uint32_t a, std::uint32_t b) {
+    return sphere.positions[a].z < sphere.positions[b].z;
+  };
+  std::vector<std::uint32_t> vertices(sphere.positions.size());
+  std::iota(vertices.begin(), vertices.end(), 0U);
+  const auto [south, north] = std::minmax_element(vertices.begin(), vertices.end(), by_height);
+  for (Triangle& t : sphere.triangles) std::replace(t.begin(), t.end(), *north, *south);
+  expect_flaw(sphere, "Euler characteristic is 1");
 }
 
 }  // namespace
