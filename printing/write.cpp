@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <fcntl.h>
 #include <limits>
 #include <random>
@@ -84,27 +86,40 @@ class OutputFile {
 // format(i, out) appends record i to the string `out`.
 template <typename Format>
 void write_records(OutputFile& file, std::size_t count, std::size_t expected_bytes_each, Format format) {
+  // A pipeline that an exception leaves forgets the blocks in flight, so that one which fails to be written
+  // ends the input instead.
+  std::exception_ptr failure;
+  std::atomic<bool> failed = false;
   std::size_t next = 0;
+  const auto next_block = [&](tbb::flow_control& control) {
+    const std::size_t first = next;
+    if (first >= count || failed) control.stop();
+    next = first + kRecordsPerBlock;
+    return first;
+  };
+  const auto format_block = [&](std::size_t first) {
+    const std::size_t last = std::min(count, first + kRecordsPerBlock);
+    std::string block;
+    block.reserve((last - first) * expected_bytes_each);
+    for (std::size_t i = first; i < last; ++i) format(i, block);
+    return block;
+  };
+  const auto write_block = [&](const std::string& block) {
+    if (failed) return;
+    try {
+      file.write(block);
+    } catch (...) {
+      failure = std::current_exception();
+      failed = true;
+    }
+  };
+  using tbb::filter_mode;
   const auto tokens = 2 * static_cast<std::size_t>(tbb::info::default_concurrency());
-  tbb::parallel_pipeline(
-      tokens, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
-                                                  [&](tbb::flow_control& control) {
-                                                    const std::size_t first = next;
-                                                    if (first >= count) control.stop();
-                                                    next = first + kRecordsPerBlock;
-                                                    return first;
-                                                  }) &
-                  tbb::make_filter<std::size_t, std::string>(
-                      tbb::filter_mode::parallel,
-                      [&](std::size_t first) {
-                        const std::size_t last = std::min(count, first + kRecordsPerBlock);
-                        std::string block;
-                        block.reserve((last - first) * expected_bytes_each);
-                        for (std::size_t i = first; i < last; ++i) format(i, block);
-                        return block;
-                      }) &
-                  tbb::make_filter<std::string, void>(tbb::filter_mode::serial_in_order,
-                                                      [&](const std::string& block) { file.write(block); }));
+  tbb::parallel_pipeline(tokens,
+                         tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, next_block) &
+                             tbb::make_filter<std::size_t, std::string>(filter_mode::parallel, format_block) &
+                             tbb::make_filter<std::string, void>(filter_mode::serial_in_order, write_block));
+  if (failure) std::rethrow_exception(failure);
 }
 
 template <typename T>
