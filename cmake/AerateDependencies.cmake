@@ -18,6 +18,14 @@ set_target_properties(lib3mf::lib3mf PROPERTIES
   IMPORTED_LOCATION "${LIB3MF_LIBRARY}"
   INTERFACE_INCLUDE_DIRECTORIES "${LIB3MF_INCLUDE_DIR}")
 
+# Not through libzip's own CMake files: Debian's refer to tools of three further packages.
+find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)
+find_library(LIBZIP_LIBRARY zip REQUIRED)
+add_library(libzip::zip UNKNOWN IMPORTED)
+set_target_properties(libzip::zip PROPERTIES
+  IMPORTED_LOCATION "${LIBZIP_LIBRARY}"
+  INTERFACE_INCLUDE_DIRECTORIES "${LIBZIP_INCLUDE_DIR}")
+
 # Debian keeps OpenVDB's find module beside the library instead of on CMake's path.
 if(NOT OpenVDB_FOUND)
   list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -19,6 +20,9 @@ constexpr std::size_t kFacetBytes = 50;
 constexpr std::size_t kMaxFacets = std::numeric_limits<std::uint32_t>::max() / 3;  // corners are numbered
 constexpr std::size_t kPreambleBytes = kHeaderBytes + sizeof(std::uint32_t);
 
+// Some editors put it before text.
+constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
+
 std::uint32_t promised_facets(const char* preamble) {
   std::uint32_t count = 0;  // little-endian, as the machines this builds for
   std::memcpy(&count, preamble + kHeaderBytes, sizeof(count));
@@ -28,7 +32,8 @@ std::uint32_t promised_facets(const char* preamble) {
 // Both kinds may begin with "solid"; binary data has zero bytes early on, text has none.
 bool looks_like_text_stl(std::string_view text) {
   constexpr std::string_view kKeyword = "solid";
-  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  const std::size_t start =
+      text.find_first_not_of(" \t\r\n", text.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0);
   if (start == std::string_view::npos || text.size() - start < kKeyword.size()) return false;
   for (std::size_t i = 0; i < kKeyword.size(); ++i) {
     if (to_lower_ascii(text[start + i]) != kKeyword[i]) return false;
@@ -70,7 +75,9 @@ FileFacts check_binary(FileBytes& bytes, const std::string& name) {
 class TextStlCheck {
  public:
   TextStlCheck(FileBytes& bytes, const std::string& name)
-      : begin_(bytes.data.get()), cursor_(begin_), end_(begin_ + bytes.size), name_(name) {}
+      : begin_(bytes.data.get()), cursor_(begin_), end_(begin_ + bytes.size), name_(name) {
+    if (bytes.text().starts_with(kUtf8Mark)) std::fill_n(begin_, kUtf8Mark.size(), ' ');
+  }
 
   std::size_t count_facets() {
     for (std::string_view token = next_token(); !token.empty(); token = next_token()) read(token);

@@ -63,6 +63,7 @@ LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& opt
   ImportedModel imported;
   if (extension == "3mf") {
     FileBytes bytes = read_file(path);
+    check_3mf(bytes, name);
     imported = import_3mf(bytes, options.unit, options.scale, name);
   } else if (extension == "stl" || extension == "obj" || extension == "ply" || extension == "off") {
     const double factor = millimetres_per(options.unit.value_or(LengthUnit::millimetre)) * options.scale;

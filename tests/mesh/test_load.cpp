@@ -136,6 +136,7 @@ TEST_F(Load, TextStlMayNameItsSolidsAnyhowAndWriteInCapitals) {
                                  "a-very-very-long-name-of-more-than-a-word"}) {
     expect_same_corners(load("box.stl", to_text_stl(box, name)).mesh, box);
   }
+  expect_same_corners(load("box.stl", "\xef\xbb\xbf" + to_text_stl(box, "box")).mesh, box);
   std::string capitals = to_text_stl(box, "box");
   for (char& c : capitals) c = static_cast<char>(std::toupper(c));
   expect_same_corners(load("box.stl", capitals).mesh, box);
@@ -499,7 +500,14 @@ TEST_F(Load, SupportObjectsOf3mfAreLeftOut) {
 TEST_F(Load, Bad3mf) {
   const std::string good =
       make_3mf(model_xml("millimeter", object_xml(1, mesh_xml(odd_box())), R"(<item objectid="1"/>)"));
-  EXPECT_TRUE(contains(input_error("cut.3mf", good.substr(0, good.size() / 2)), "3MF"));
+  EXPECT_TRUE(contains(input_error("cut.3mf", good.substr(0, good.size() / 2)), "cut short or damaged"));
+  EXPECT_TRUE(contains(input_error("tail.3mf", good.substr(0, good.size() - 1)), "cut short or damaged"));
+  EXPECT_TRUE(contains(input_error("text.3mf", "solid cube"), "does not begin as a zip archive"));
+  EXPECT_TRUE(contains(input_error("letter.3mf", test::make_zip({{"word/document.xml", "<w:document/>"}})),
+                       "a zip archive without a model"));
+  std::string altered = good;
+  altered[altered.find("<vertex ") + 11] ^= 1;
+  EXPECT_TRUE(contains(input_error("altered.3mf", altered), "'3D/3dmodel.model' in the 3MF package"));
   EXPECT_TRUE(contains(
       input_error("nothing.3mf", make_3mf(model_xml("millimeter", object_xml(1, mesh_xml(odd_box())), ""))),
       "no triangles"));
