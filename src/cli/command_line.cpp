@@ -7,7 +7,9 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "cli/config_file.h"
 #include "cli/hollow_command.h"
@@ -36,12 +38,25 @@ constexpr const char* kFooter =
     "    5  nothing to remove under these limits, or nothing saved by it\n"
     "  130  interrupted; no output was written";
 
+// CLI11's words for a line of a configuration file that it can make nothing of, in ours.
+std::string about_config(const CLI::App& app, std::string what) {
+  constexpr std::string_view kUnknown = "INI was not able to parse ";
+  if (what.starts_with(kUnknown)) what = "'" + what.substr(kUnknown.size()) + "' is no option";
+  return app.get_config_ptr()->as<std::string>() + ": " + what;
+}
+
 // CLI11's message as an error of the program's own.
 [[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
   std::string what = error.what();
   while (!what.empty() && what.back() == '\n') what.pop_back();
+  if (dynamic_cast<const CLI::ConfigError*>(&error) != nullptr) {
+    throw UsageError(about_config(app, what),
+                     "its lines are options by their long names without dashes, as in 'wall = 1.2'");
+  }
   std::string command = app.get_name();
   for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
+  const std::vector<std::string> unknown = app.remaining();
+  if (app.get_subcommands().empty() && !unknown.empty()) what = "'" + unknown.front() + "' is no command";
   throw UsageError(what, "see '" + command + " --help'");
 }
 

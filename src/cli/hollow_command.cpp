@@ -38,7 +38,7 @@ struct HollowCommand::Options {
     command
         .add_option("--max-triangles", max_triangles,
                     "Loosen the tolerance until the result has at most so many triangles")
-        ->check(number_between(4.0, 4e9, "triangles"))
+        ->check(whole_number_between(4, 4e9, "triangles"))
         ->type_name("N");
     command
         .add_option(

@@ -51,7 +51,7 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
       ->capture_default_str();
   command
       .add_option("--max-voids", max_voids_, "Adaptive packing: no more voids than this, the largest ones")
-      ->check(number_between(1.0, 4e9, "voids"))
+      ->check(whole_number_between(1, 4e9, "voids"))
       ->type_name("N");
   command
       .add_option("--target-density", target_density_,
@@ -91,7 +91,7 @@ RunOptions::RunOptions(CLI::App& command) {
   command.add_option("--json", json, "Write the report as JSON to this file, '-' for standard output")
       ->type_name("FILE");
   command.add_option("--threads", threads, "Threads to use (default all); the result is the same")
-      ->check(number_between(1.0, 1024, "threads"))
+      ->check(whole_number_between(1, 1024, "threads"))
       ->type_name("N");
   command.add_flag("--quiet", quiet_, "No report, no notices, no progress; only errors");
   command.fallthrough();

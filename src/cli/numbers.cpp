@@ -22,4 +22,16 @@ CLI::Validator number_between(std::optional<double> least, double most, const st
   return CLI::Validator(check, "");
 }
 
+CLI::Validator whole_number_between(double least, double most, const std::string& unit) {
+  const CLI::Validator in_range = number_between(least, most, unit);
+  const auto check = [in_range](const std::string& text) -> std::string {
+    const std::string fault = in_range(text);
+    if (!fault.empty()) return fault;
+    double number = 0;
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    return number == std::floor(number) ? std::string() : fmt::format("'{}' is not a whole number", text);
+  };
+  return CLI::Validator(check, "");
+}
+
 }  // namespace aerate::cli

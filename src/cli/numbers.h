@@ -9,6 +9,9 @@ namespace aerate::cli {
 // Accepts a number in [least, most], or in (0, most] with `least` absent; `unit` is for the message.
 CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit);
 
+// The same without fractions.
+CLI::Validator whole_number_between(double least, double most, const std::string& unit);
+
 // No length of a print is beyond this, mm.
 inline constexpr double kLongest = 1e5;
 

@@ -166,9 +166,11 @@ Repaired orient_consistently(Mesh mesh) {
   }
   Repaired repaired{std::move(mesh), {}};
   if (turned_count > 0) {
-    repaired.notices.push_back(fmt::format("{} triangles of {} {} were turned to agree with their neighbours",
-                                           turned_count, turned_shells,
-                                           turned_shells == 1 ? "shell" : "shells"));
+    repaired.notices.push_back(
+        fmt::format("{} of {} turned to agree with {}",
+                    turned_count == 1 ? "1 triangle" : fmt::format("{} triangles", turned_count),
+                    turned_shells == 1 ? "1 shell" : fmt::format("{} shells", turned_shells),
+                    turned_count == 1 ? "its neighbours" : "their neighbours"));
   }
   if (left > 0) {
     repaired.notices.push_back(fmt::format(

@@ -1,6 +1,7 @@
 #include "pipeline/pack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <utility>
 
@@ -66,15 +67,22 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
 [[noreturn]] void refuse_empty(const PreparedModel& model, const PackingLimits& limits) {
   const std::string file = model.input.path.filename().string();
   const Sphere largest = largest_inscribed_sphere(model.mesh);
-  const std::string place =
-      fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", largest.centre.x, largest.centre.y, largest.centre.z);
+  // Rounded first, so that nothing reads as -0.0.
+  const auto tenths = [](double coordinate) { return std::round(coordinate * 10) / 10 + 0.0; };
+  const std::string place = fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", tenths(largest.centre.x),
+                                        tenths(largest.centre.y), tenths(largest.centre.z));
   const double fitting = largest.radius - limits.wall;
   if (fitting <= 0) {
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: the model is thinner than twice the wall of {:.3g} mm; without "
                     "any wall the largest sphere that fits has radius {:.3g} mm, near {}",
                     file, limits.wall, largest.radius, place),
-        fmt::format("give a --wall well below {:.3g} mm", largest.radius));
+        largest.radius < limits.min_radius
+            ? fmt::format(
+                  "not even without a wall would a void of --min-radius {:.3g} mm fit: are --unit and "
+                  "--scale right?",
+                  limits.min_radius)
+            : fmt::format("give a --wall well below {:.3g} mm", largest.radius));
   }
   if (fitting < limits.min_radius) {
     throw NothingToRemoveError(

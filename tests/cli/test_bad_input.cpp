@@ -214,6 +214,13 @@ TEST(BadInput, ModelSmallerThanTwiceTheWall) {
   expect_refused(job, run(job.hollow(model)), kNothing, {"tiny.stl", "nothing to remove", "radius 1 mm"});
 }
 
+TEST(BadInput, ModelInAnotherUnitIsNotToldToChangeTheWall) {
+  const Job job;
+  const auto model = job.input("metres.stl", make_box({0, 0, 0}, {0.02F, 0.02F, 0.02F}));
+  expect_refused(job, run(job.hollow(model)), kNothing,
+                 {"radius 0.01 mm", "near (0.0, 0.0, 0.0) mm", "--unit"});
+}
+
 TEST(BadInput, NothingAsLargeAsAskedSaysWhatWouldFit) {
   const Job job;
   const auto model = job.input("thin.stl", make_box({0, 0, 0}, {20, 20, 4}));
@@ -328,6 +335,9 @@ TEST(BadInput, NumbersThatMakeNoSense) {
   refused({"--threads", "0"}, "at least 1");
   refused({"--density", "-1"}, "-1 g/cm3");
   refused({"--max-triangles", "3"}, "3 triangles");
+  refused({"--max-triangles", "4000.5"}, "not a whole number");
+  refused({"--max-voids", "2.5"}, "not a whole number");
+  refused({"--threads", "1.5"}, "not a whole number");
   refused({"--max-triangles", "20"}, "12 triangles of its own");
   refused({"--surface", "paint"}, "paint");
   refused({"--packing", "random"}, "random");

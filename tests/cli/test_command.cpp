@@ -234,11 +234,20 @@ TEST(Command, ConfigFileWithAnUnknownKeyOrNonsenseIsRefused) {
     EXPECT_EQ(result.exit_code, 2) << config;
     EXPECT_TRUE(contains(result.err, "wal"));
   }
+  const auto unknown = job.input("aerate.toml", "wal = 2\n");
+  const ProcessResult named = run(job.hollow(sample("bracket.stl"), {"--config", unknown.string()}));
+  EXPECT_TRUE(contains(named.err, unknown.string() + ": 'hollow.wal' is no option"));
   const ProcessResult missing =
       run(job.hollow(sample("bracket.stl"), {"--config", (job.folder() / "none.toml").string()}));
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_TRUE(contains(missing.err, "none.toml"));
   EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+TEST(Command, UnknownCommandIsNamed) {
+  const ProcessResult result = run({AERATE_EXECUTABLE, "hallow", sample("bracket.stl")});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(contains(result.err, "'hallow' is no command"));
 }
 
 TEST(Command, NoBarAndNoColourUnlessOnATerminal) {
