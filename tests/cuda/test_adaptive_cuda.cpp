@@ -47,10 +47,16 @@ TEST_F(AdaptiveCuda, StopsAtACountAndADensityAsTheCpuDoes) {
 }
 
 struct RealModel {
+  const char* name;  // of the test
   const char* file;
   PackingLimits limits;
   std::size_t count;
 };
+
+// What a failure names.
+void PrintTo(const RealModel& model, std::ostream* out) {
+  *out << model.file;
+}
 
 class AdaptiveCudaOnModels : public AdaptiveCuda, public ::testing::WithParamInterface<RealModel> {};
 
@@ -62,8 +68,9 @@ TEST_P(AdaptiveCudaOnModels, PacksAsTheCpuDoes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, AdaptiveCudaOnModels,
-                         ::testing::Values(RealModel{"capsule.stl", {0.1, 0.1, 0.05, 10}, 25},
-                                           RealModel{"bunny-7202.stl", {0.1, 0.05, 0.05, 10}, 25}));
+                         ::testing::Values(RealModel{"Capsule", "capsule.stl", {0.1, 0.1, 0.05, 10}, 25},
+                                           RealModel{"Bunny", "bunny-7202.stl", {0.1, 0.05, 0.05, 10}, 25}),
+                         [](const auto& model) { return model.param.name; });
 
 }  // namespace
 }  // namespace aerate

@@ -56,10 +56,16 @@ TEST_F(HexagonalCuda, PacksInSlabsAsTheCpuDoesAtOnce) {
 }
 
 struct RealModel {
+  const char* name;  // of the test
   const char* file;
   PackingLimits limits;
   std::size_t least_spheres;
 };
+
+// What a failure names.
+void PrintTo(const RealModel& model, std::ostream* out) {
+  *out << model.file;
+}
 
 class HexagonalCudaOnModels : public HexagonalCuda, public ::testing::WithParamInterface<RealModel> {};
 
@@ -69,13 +75,15 @@ TEST_P(HexagonalCudaOnModels, PacksAsTheCpuDoes) {
   expect_same_on_cuda(load_model(file).mesh, GetParam().limits, GetParam().least_spheres);
 }
 
-INSTANTIATE_TEST_SUITE_P(, HexagonalCudaOnModels,
-                         ::testing::Values(RealModel{"cone.stl", {0, 0, 0, 0.5}, 500},
-                                           RealModel{"capsule.stl", {0.1, 0.1, 0.05, 0.6}, 200},
-                                           RealModel{"bunny-7202.stl", {0, 0, 0, 0.5}, 500},
-                                           RealModel{"bunny-7202.stl", {0.1, 0.05, 0.02, 0.4}, 500},
-                                           RealModel{"dino.off", {0, 0, 0, 0.05}, 500},
-                                           RealModel{"dragon-21782.stl", {0, 0, 0, 0.2}, 500}));
+INSTANTIATE_TEST_SUITE_P(
+    , HexagonalCudaOnModels,
+    ::testing::Values(RealModel{"Cone", "cone.stl", {0, 0, 0, 0.5}, 500},
+                      RealModel{"CapsuleWithWallAndGap", "capsule.stl", {0.1, 0.1, 0.05, 0.6}, 200},
+                      RealModel{"Bunny", "bunny-7202.stl", {0, 0, 0, 0.5}, 500},
+                      RealModel{"BunnyWithWallAndGap", "bunny-7202.stl", {0.1, 0.05, 0.02, 0.4}, 500},
+                      RealModel{"Dino", "dino.off", {0, 0, 0, 0.05}, 500},
+                      RealModel{"Dragon", "dragon-21782.stl", {0, 0, 0, 0.2}, 500}),
+    [](const auto& model) { return model.param.name; });
 
 TEST_F(HexagonalCuda, StopsWhenItsCallerDoes) {
   const Mesh torus = test::make_torus(5, 2, 48, 24);
