@@ -17,6 +17,7 @@
 #include <unistd.h>
 #include <vector>
 
+#include "bench/surface_samples.h"
 #include "kernels/point_triangle.h"
 #include "kernels/triangle_bvh.h"
 #include "mesh/load.h"
@@ -106,26 +107,6 @@ void print_spheres() {
   }
 }
 
-// Points spread over the surface, about `count` of them, every part of it alike.
-std::vector<Vec3d> sample(const Mesh& mesh, std::size_t count) {
-  const double area_each = surface_area(mesh) / static_cast<double>(count);
-  std::vector<Vec3d> points;
-  double area_due = area_each / 2;
-  double u = 0.5, v = 0.5;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = to_double(mesh.positions[t[0]]);
-    const Vec3d ab = to_double(mesh.positions[t[1]]) - a, ac = to_double(mesh.positions[t[2]]) - a;
-    area_due -= length(cross(ab, ac)) / 2;
-    for (; area_due < 0; area_due += area_each) {
-      // The plastic-number sequence fills the unit square evenly; its upper half is folded down.
-      u = std::fmod(u + 0.7548776662466927, 1.0);
-      v = std::fmod(v + 0.5698402909980532, 1.0);
-      points.push_back(u + v <= 1 ? a + ab * u + ac * v : a + ab * (1 - u) + ac * (1 - v));
-    }
-  }
-  return points;
-}
-
 struct Deviation {
   double largest = 0, root_mean_square = 0;
 };
@@ -134,7 +115,7 @@ Deviation deviation(const Mesh& from, const Mesh& to) {
   const kernels::HostTriangleBvh bvh(to.positions, to.triangles);
   Deviation result;
   double squares = 0;
-  const std::vector<double> distances = bvh.distances(sample(from, 500'000));
+  const std::vector<double> distances = bvh.distances(bench::sample_surface(from, 500'000).points);
   for (const double distance : distances) {
     result.largest = std::max(result.largest, distance);
     squares += distance * distance;
