@@ -40,9 +40,9 @@ std::string own(const char* why) {
 }
 
 Process make(std::string name, std::string title, std::string material, Drainage drainage,
-             std::vector<std::pair<Limit, SourcedValue>> figures) {
+             const std::vector<std::pair<Limit, SourcedValue>>& figures) {
   Process process{std::move(name), std::move(title), std::move(material), drainage, {}};
-  for (auto& [limit, figure] : figures) process[limit] = std::move(figure);
+  for (const auto& [limit, figure] : figures) process[limit] = figure;
   return process;
 }
 
