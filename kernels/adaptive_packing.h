@@ -15,6 +15,7 @@
 #include "kernels/adaptive_lattice.h"
 #include "kernels/adaptive_refine.h"
 #include "kernels/adaptive_selection.h"
+#include "kernels/adaptive_settle.h"
 #include "kernels/ball_grid.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
@@ -37,8 +38,10 @@ struct AdaptiveParameters {
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
   double max_volume = kUnbounded;  // mm3, of all balls
   double level_ratio = 0.9;        // balls of a level are at least this much of its largest
-  double cell_ratio = 1.4;         // half diagonal of searched cells to the level's least radius
+  double cell_ratio = 1.8;         // half diagonal of searched cells to the level's least radius
   double region_ratio = 1.25;
+  double settle_reach = 1;  // to the largest radius; 0 for balls of it that stay where there is room
+  double least_lattice_share = 0.25;  // of the volume, with half the gap around each ball: else no lattice
   std::uint32_t lattice_trials = 16;
   double tolerance_ratio = 1e-4;  // precision of the maxima to the level's least radius
 };
@@ -46,7 +49,8 @@ struct AdaptiveParameters {
 struct AdaptiveInput {
   std::span<const Vec3f> positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;
-  Box3d box{};  // of the positions
+  Box3d box{};        // of the positions
+  double volume = 0;  // mm3, of the solid
   AdaptiveParameters parameters;
   // Cells, searches and places that are worked on at a time; fewer if memory asks for it. The result does not
   // depend on it.
@@ -81,7 +85,7 @@ struct Search {
     const LocalMaximum maximum = find_local_maximum(field, cell.anchor(), cells.half_diagonal(id), limits);
     found[i] = maximum.value >= limits.least ? 1 : 0;
     if (found[i] != 0) {
-      candidates[i] = {maximum.point, maximum.value - shrink};
+      candidates[i] = {maximum.point, maximum.value - shrink, maximum.value};
       cells.bounds[id] = maximum.value;
     } else {
       // Asleep until the threshold falls; at most until the next level.
@@ -132,6 +136,7 @@ class AdaptivePacker {
         paced_(executor, [this, &input] { input.progress(share_done()); }),
         parameters_(input.parameters),
         box_(input.box),
+        solid_volume_(input.volume),
         grid_(executor),
         tree_(executor, paced_),
         selection_(executor, paced_) {
@@ -155,6 +160,10 @@ class AdaptivePacker {
 
  private:
   static constexpr double kLatticeDiameters = 3;
+  // The grid of balls is made anew when the largest clearance left is this much of its reach: long lists cost
+  // more than new ones.
+  static constexpr double kRebuildRatio = 0.75;
+  static constexpr double kSphereVolume = 4.18879020478639098;  // 4/3 pi
 
   // The winding numbers' index is made of the hierarchy's own facets, so that they are in memory once.
   void build_index(const AdaptiveInput& input) {
@@ -177,11 +186,13 @@ class AdaptivePacker {
     tree_.make_roots(field(), box_, at_a_time_);
     rebuild_grids(largest);
     grid_.enter(balls_.view(), 0, parameters_.max_radius);
+    if (parameters_.max_radius < half_extent && parameters_.settle_reach > 0) settle_largest();
+    if (done_) return;
     threshold_ =
         parameters_.max_radius < half_extent ? largest - 4 * shrink_ : largest * parameters_.level_ratio;
     while (true) {
       if (threshold_ < parameters_.min_radius) threshold_ = parameters_.min_radius;
-      if (largest < 0.6 * grid_.reach()) rebuild_grids(largest);
+      if (largest < kRebuildRatio * grid_.reach()) rebuild_grids(largest);
       while (place_round()) {
         if (done_) return;
       }
@@ -189,6 +200,19 @@ class AdaptivePacker {
       largest = threshold_;
       threshold_ *= parameters_.level_ratio;
     }
+  }
+
+  // Balls of the largest radius where they rest on others. What floats, or the last few that trickle in one
+  // by one, is left to the rounds that follow.
+  void settle_largest() {
+    constexpr std::size_t kFewest = 200;  // of those that stand, a round adds at least one for so many
+    const Settling settling{parameters_.max_radius, parameters_.settle_reach * parameters_.max_radius};
+    threshold_ = settling.least();
+    std::size_t before = 0;
+    do {
+      before = balls_.size();
+      if (!place_round(&settling)) return;
+    } while (!done_ && balls_.size() > before + before / kFewest);
   }
 
   // A guess: by count or volume where they are limited, else by the radius reached.
@@ -209,31 +233,39 @@ class AdaptivePacker {
   FieldView field() { return {bvh_.view, winding_.view, grid_.view(), parameters_.wall}; }
 
   // Starts from the densest lattice of balls of max_radius where that is small against the model, in the best
-  // of several orientations and offsets; `Lattice` says which there are.
+  // of several orientations and offsets; `Lattice` says which there are. In slender models a lattice fits
+  // badly whatever its offset, and balls that settle are denser.
   void place_lattice(double half_extent) {
     if (!(parameters_.max_radius * kLatticeDiameters < half_extent)) return;
-    const LatticeFit fit{bvh_.view, winding_.view, parameters_.max_radius + parameters_.wall + shrink_};
+    // A trifle smaller, so that ten balls fit where ten diameters are the length of a box.
+    const double radius = parameters_.max_radius * (1 - 1e-9);
+    const LatticeFit fit{bvh_.view, winding_.view, radius + parameters_.wall + shrink_};
     Lattice best;
     std::size_t best_count = 0;
     for (std::uint32_t trial = 0; trial < parameters_.lattice_trials; ++trial) {
-      const Lattice lattice = make_lattice(box_, parameters_.max_radius + 0.5 * parameters_.gap + shrink_,
-                                           parameters_.max_radius + parameters_.wall, trial);
+      const Lattice lattice = make_lattice(box_, radius + 0.5 * parameters_.gap + shrink_,
+                                           radius + parameters_.wall + 2 * shrink_, trial);
       const std::size_t count = count_fitting(fit, lattice);
       if (count <= best_count) continue;
       best = lattice;
       best_count = count;
     }
-    if (best_count == 0) return;
+    if (best_count == 0 || lattice_share(best_count) < parameters_.least_lattice_share) return;
     best_count = std::min(best_count, parameters_.max_count);
     lattice_count_ = best_count;
     balls_.resize(executor_, best_count);
     std::size_t placed = 0;
     for_each_fit(fit, best, [&](std::size_t first, View<const std::uint8_t> fits) {
-      const PlaceLattice place{best, first, fits, parameters_.max_radius, balls_.view_from(placed)};
+      const PlaceLattice place{best, first, fits, radius, balls_.view_from(placed)};
       const Tally total = executor_.select(fits.size, TallyFitting{fits}, place);
       placed = std::min(placed + total.first, best_count);
     });
     stop_at_limits(0);
+  }
+
+  double lattice_share(std::size_t count) const {
+    const double radius = parameters_.max_radius + 0.5 * parameters_.gap;
+    return static_cast<double>(count) * kSphereVolume * radius * radius * radius / solid_volume_;
   }
 
   std::size_t count_fitting(const LatticeFit& fit, const Lattice& lattice) {
@@ -261,28 +293,32 @@ class AdaptivePacker {
   // Grids for clearances up to `reach`, with all balls placed so far.
   void rebuild_grids(double reach) {
     grid_.reset(box_, reach, parameters_.gap, at_a_time_);
-    selection_.reset(box_, reach, parameters_.gap, grid_.cell());
+    // A trifle more than the gap, since two that are accepted together may touch.
+    selection_.reset(box_, reach, parameters_.gap + shrink_, grid_.cell());
   }
 
-  // One round: false if nothing of at least the threshold was placed.
-  bool place_round() {
+  // One round: false if nothing of at least the threshold was placed. `settling`, if any: where balls are
+  // pulled.
+  bool place_round(const Settling* settling = nullptr) {
     using namespace adaptive_detail;
     ++round_count_;
     const View<const std::uint32_t> cells = tree_.refine(
         field(), threshold_, parameters_.cell_ratio * threshold_, max_of(parameters_.min_radius, 0.0));
     if (cells.size == 0) return false;
     search_count_ += cells.size;
-    search(cells);
+    search(cells, settling);
     if (candidates_.size() == 0) return false;
     const std::size_t first = balls_.size();
     selection_.place(candidates_.view(), keys_.view(), order_.view(), parameters_.max_count - first, balls_);
-    grid_.enter(balls_.view(), first, grid_.reach());
     stop_at_limits(first);
+    if (done_) return true;
+    order_along_curve(executor_, box_, balls_.view_from(first));
+    grid_.enter(balls_.view(), first, grid_.reach());
     return true;
   }
 
   // Leaves what is found in these cells in `candidates_`, with keys and order for ranking.
-  void search(View<const std::uint32_t> cells) {
+  void search(View<const std::uint32_t> cells, const Settling* settling) {
     using namespace adaptive_detail;
     const RefineLimits limits{threshold_ + shrink_, grid_.reach(), parameters_.tolerance_ratio * threshold_,
                               parameters_.region_ratio};
@@ -294,6 +330,10 @@ class AdaptivePacker {
       resize_candidates(found + list.size);
       paced_.for_each_index(
           list.size, Search{tree_.view(), field(), list, limits, shrink_, searched_.view(), found_.view()});
+      if (settling != nullptr) {
+        paced_.for_each_index(list.size,
+                              Settle{field(), *settling, shrink_, searched_.view(), found_.view()});
+      }
       const ListFound append{searched_.view(),   found_.view(), found,
                              candidates_.view(), keys_.view(),  order_.view()};
       found += executor_.select(list.size, TallyFound{found_.view()}, append).first;
@@ -311,7 +351,6 @@ class AdaptivePacker {
   void stop_at_limits(std::size_t first) {
     if (balls_.size() >= parameters_.max_count) done_ = true;
     if (!(parameters_.max_volume < kUnbounded)) return;
-    constexpr double kSphereVolume = 4.18879020478639098;  // 4/3 pi
     std::size_t count = first;
     for (const Ball& ball :
          executor_.download(View<Ball>{balls_.view().data + first, balls_.size() - first})) {
@@ -328,6 +367,7 @@ class AdaptivePacker {
   Paced<Executor> paced_;
   AdaptiveParameters parameters_;
   Box3d box_;
+  double solid_volume_;
   TriangleBvh<Executor> bvh_;
   WindingIndex<Executor> winding_;
   double shrink_ = 0;

@@ -26,18 +26,33 @@ class FourConstraints {
   // Planes that are `value` at p and fall away from it at a slope of 1 on all sides.
   AERATE_HD void reset(Vec3d p, double value, double radius) {
     constexpr double kThird = 0.57735026918962576;
-    const double s = kThird * radius;
+    reset_with_pull(p, {kThird, kThird, kThird}, value, value, radius);
+  }
+
+  // The same with a first plane that rises along `pull`, a unit vector along a diagonal of the axes, and is
+  // `pull_value` at p.
+  AERATE_HD void reset_with_pull(Vec3d p, Vec3d pull, double pull_value, double value, double radius) {
     // Gradient of |x - c| is away from c.
-    centre_[0] = p - Vec3d{s, s, s};
-    centre_[1] = p - Vec3d{s, -s, -s};
-    centre_[2] = p - Vec3d{-s, s, -s};
-    centre_[3] = p - Vec3d{-s, -s, s};
+    centre_[0] = p - Vec3d{pull.x, pull.y, pull.z} * radius;
+    centre_[1] = p - Vec3d{pull.x, -pull.y, -pull.z} * radius;
+    centre_[2] = p - Vec3d{-pull.x, pull.y, -pull.z} * radius;
+    centre_[3] = p - Vec3d{-pull.x, -pull.y, pull.z} * radius;
     AERATE_UNROLL
     for (int k = 0; k < 4; ++k) {
-      radius_[k] = radius - value;
+      radius_[k] = radius - (k == 0 ? pull_value : value);
       artificial_[k] = true;
     }
     linearise(p);
+  }
+  AERATE_HD void raise_pull(double value) { radius_[0] -= value; }
+  AERATE_HD double pull_weight() const { return -dot(cofactor_[0], last_normal_); }
+  AERATE_HD bool any_artificial_beside_pull() const {
+    return artificial_[1] || artificial_[2] || artificial_[3];
+  }
+  // False where the pull would have to leave: no point nearby has the value that is wanted.
+  AERATE_HD bool enter_beside_pull(const Clearance& constraint, Vec3d p) {
+    enter(constraint, p);
+    return artificial_[0];
   }
 
   // Normals, values and weights at p; false if the four normals lie in a plane.

@@ -21,16 +21,19 @@ namespace aerate::kernels {
 struct Candidate {
   Vec3d point;
   double value;
+  double rank;  // the greater goes first; the value, unless balls of one size are placed
 };
 
-// Sorts candidates, the largest first.
+// Sorts candidates, the greatest rank first.
 AERATE_HD inline std::uint64_t rank_key(const Candidate& candidate) {
   union {
     double value;
     std::uint64_t bits;
   } convert;
-  convert.value = candidate.value;
-  return ~convert.bits;  // positive doubles sort as their bits do
+  convert.value = candidate.rank;
+  // Doubles sort as their bits do, once negative ones are turned over.
+  constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
+  return (convert.bits & kSign) != 0 ? convert.bits : ~convert.bits & ~kSign;
 }
 
 namespace selection_detail {

@@ -9,6 +9,7 @@
 
 #include "kernels/atomic.h"
 #include "kernels/growing_buffer.h"
+#include "kernels/space_curve.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
 #include "kernels/winding.h"
@@ -121,6 +122,26 @@ struct AxisDistances {
   }
 };
 
+struct BallKeys {
+  View<const Ball> balls;
+  CurveFrame frame;
+  View<std::uint64_t> keys;
+  View<std::uint32_t> order;
+
+  AERATE_HD void operator()(std::size_t i) const {
+    keys[i] = frame.key(balls[i].centre);
+    order[i] = static_cast<std::uint32_t>(i);
+  }
+};
+
+struct GatherBalls {
+  View<const Ball> from;
+  View<const std::uint32_t> order;
+  View<Ball> to;
+
+  AERATE_HD void operator()(std::size_t i) const { to[i] = from[order[i]]; }
+};
+
 enum class EnterPass { mark_inside_and_count, link };
 
 // Enters one layer of cells along z of a ball: the unit of work, so that a large ball is not one thread's.
@@ -172,6 +193,20 @@ struct EnterLayer {
 
 }  // namespace ball_grid_detail
 
+// Puts balls into the order of a curve that fills the box: those near in space are asked for together, and
+// should be near in memory.
+template <typename Executor>
+void order_along_curve(const Executor& executor, const Box3d& box, View<Ball> balls) {
+  using namespace ball_grid_detail;
+  auto keys = executor.template allocate<std::uint64_t>(balls.size);
+  auto order = executor.template allocate<std::uint32_t>(balls.size);
+  auto ordered = executor.template allocate<Ball>(balls.size);
+  executor.for_each_index(balls.size, BallKeys{balls, CurveFrame(box), keys.view(), order.view()});
+  executor.sort_pairs(keys.view(), order.view());
+  executor.for_each_index(balls.size, GatherBalls{balls, order.view(), ordered.view()});
+  executor.for_each_index(balls.size, CopyElements<Ball>{ordered.view(), balls});
+}
+
 template <typename Executor>
 class BallGrid {
  public:
@@ -188,7 +223,8 @@ class BallGrid {
     most_at_a_time_ = most_at_a_time;
     const Vec3d size = box.upper - box.lower;
     const double volume = max_of(size.x, reach) * max_of(size.y, reach) * max_of(size.z, reach);
-    const double cell = max_of(reach, std::cbrt(volume / most_cells()));
+    constexpr double kCellToReach = 1.4;  // smaller cells cost more to fill than they save
+    const double cell = max_of(kCellToReach * reach, std::cbrt(volume / most_cells()));
     view_.origin = box.lower;
     view_.cell = cell;
     view_.cells_per_mm = 1 / cell;

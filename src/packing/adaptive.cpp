@@ -38,13 +38,14 @@ kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits,
   input.positions = mesh.positions;
   input.triangles = mesh.triangles;
   input.box = {to_double(box.lower), to_double(box.upper)};
+  input.volume = std::abs(signed_volume(mesh));
   input.parameters.wall = limits.wall;
   input.parameters.gap = limits.gap;
   input.parameters.min_radius = limits.min_radius;
   input.parameters.max_radius = limits.max_radius;
   input.parameters.max_count = options.max_count;
   if (options.target_density < 1) {
-    input.parameters.max_volume = options.target_density * std::abs(signed_volume(mesh));
+    input.parameters.max_volume = options.target_density * input.volume;
   }
   input.progress = [&monitor](double share) {
     monitor.progress(share);

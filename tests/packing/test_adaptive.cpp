@@ -243,6 +243,31 @@ TEST(Adaptive, StartsFromALatticeWhereTheLargestRadiusIsSmall) {
   EXPECT_GE(measure_clearances(cube, packing.spheres).gap.value(), 0);
 }
 
+TEST(Adaptive, FillsABoxThatIsAWholeNumberOfDiametersWide) {
+  const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
+  const Packing packing = pack(cube, {0, 0, 0.45, 0.5});
+  // Square layers of ten by ten and nine by nine, 13 of them.
+  EXPECT_GE(packing.spheres.size(), 1180U);
+  expect_limits_held(cube, packing);
+}
+
+TEST(Adaptive, BallsOfTheLargestRadiusComeToRestWhereNoLatticeFits) {
+  const Mesh bracket = make_bracket();
+  const Packing packing = pack(bracket, {0, 0.2, 2.0, 2.2});
+  EXPECT_TRUE(
+      std::ranges::none_of(packing.spheres, [](const Sphere& s) { return s.kind == SphereKind::lattice; }));
+  expect_limits_held(bracket, packing);
+  for (const Sphere& s : packing.spheres) {
+    if (s.radius < 2.2 * (1 - 1e-3)) continue;
+    int touched = 0;
+    for (const Sphere& t : packing.spheres) {
+      if (&t != &s && length(s.centre - t.centre) < s.radius + t.radius + 0.2 + 0.01) ++touched;
+    }
+    if (test::distance_to_surface(bracket, s.centre) < s.radius + 0.01) ++touched;
+    EXPECT_GE(touched, 1) << s.centre.x << ' ' << s.centre.y << ' ' << s.centre.z;
+  }
+}
+
 TEST(Adaptive, LeavesOverlapsOfPartsAlone) {
   const Mesh parts =
       test::join(test::make_box({0, 0, 0}, {10, 10, 10}), test::make_box({6, 0, 0}, {20, 10, 10}));
