@@ -107,9 +107,10 @@ __global__ void __launch_bounds__(kStepBlock, 1)
   }
 }
 
-// A block of `select` handles this many elements.
+// A block of `select` handles tiles of this many elements, a thread a few neighbours of each.
 inline constexpr unsigned kSelectBlock = 256;
-inline constexpr std::size_t kSelectTile = 8 * std::size_t{kSelectBlock};
+inline constexpr std::size_t kSelectRun = 8;
+inline constexpr std::size_t kSelectTile = kSelectRun * kSelectBlock;
 
 // Sums within a block by shuffles. Ours and not cub::BlockScan, whose headers double the time that every file
 // with a kernel takes to compile.
@@ -157,10 +158,17 @@ __global__ void __launch_bounds__(kSelectBlock, 1)
 template <typename TallyOf, typename Emit>
 __device__ void select_elements(const TallyOf& tally, const Emit& emit, std::size_t first, std::size_t last,
                                 Tally& sum) {
-  for (std::size_t row = first; row < last; row += kSelectBlock) {
-    const std::size_t i = row + threadIdx.x;
-    const TallySums sums = sum_over_block(i < last ? tally(i) : Tally{});
-    if (i < last) emit(i, sum + sums.before);
+  for (std::size_t tile = first; tile < last; tile += kSelectTile) {
+    const std::size_t begin = tile + threadIdx.x * kSelectRun;
+    const std::size_t end = begin + kSelectRun < last ? begin + kSelectRun : last;
+    Tally own{};
+    for (std::size_t i = begin; i < end; ++i) own = own + tally(i);
+    const TallySums sums = sum_over_block(own);
+    Tally before = sum + sums.before;
+    for (std::size_t i = begin; i < end; ++i) {
+      emit(i, before);
+      before = before + tally(i);
+    }
     sum = sum + sums.all;
   }
 }
