@@ -50,8 +50,9 @@ class NoticeBoard : public Monitor {
 };
 
 // What the torus needs: strips of it with their index, and its whole index with the first cells.
-constexpr std::size_t kLeastForHexagonal = 200 << 10;
+constexpr std::size_t kLeastForHexagonal = 120 << 10;
 constexpr std::size_t kLeastForAdaptive = 900 << 10;
+constexpr std::size_t kLeastForPieces = 1400 << 10;  // a longer job
 
 // Enough work for the model to choose the device.
 constexpr WorkEstimate kMuchWork{1e6, 0};
@@ -102,11 +103,10 @@ TEST_F(DeviceMemory, AdaptivePackingIsTheSameOrSaysWhyNot) {
 
 // Not all cells, searches and places at once, which need more than these devices have.
 TEST_F(DeviceMemory, AdaptivePackingWorksInPieces) {
-  if (bytes_ < kLeastForAdaptive) return;  // refused, as the test before shows
+  if (bytes_ < kLeastForPieces) return;
   kernels::AdaptiveInput input = test::adaptive_input(torus_);
-  input.parameters.min_radius = 0.35;
-  input.parameters.max_radius = 0.6;
-  input.parameters.max_count = 150;
+  input.parameters.min_radius = 0.3;
+  input.parameters.max_count = 100;
   const kernels::AdaptiveResult whole = kernels::pack_adaptive(kernels::TbbExecutor{}, input);
   const kernels::AdaptiveResult result = kernels::pack_adaptive_on_cuda(0, input);
   EXPECT_LT(result.most_at_a_time, 4000U);
