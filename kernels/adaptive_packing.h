@@ -312,7 +312,7 @@ class AdaptivePacker {
     selection_.place(candidates_.view(), keys_.view(), order_.view(), parameters_.max_count - first, balls_);
     stop_at_limits(first);
     if (done_) return true;
-    order_along_curve(executor_, box_, balls_.view_from(first));
+    ball_order_.order(executor_, box_, balls_.view_from(first));
     grid_.enter(balls_.view(), first, grid_.reach());
     return true;
   }
@@ -378,6 +378,7 @@ class AdaptivePacker {
   std::size_t search_count_ = 0, round_count_ = 0, lattice_count_ = 0;
 
   BallGrid<Executor> grid_;
+  BallOrder<Executor> ball_order_;
   CellTree<Executor> tree_;
   CandidateSelection<Executor> selection_;
   GrowingBuffer<Executor, Ball> balls_;

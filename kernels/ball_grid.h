@@ -134,12 +134,20 @@ struct BallKeys {
   }
 };
 
-struct GatherBalls {
-  View<const Ball> from;
+// In two steps: gathered in order, and put back.
+struct ReorderBalls {
+  static constexpr unsigned kSteps = 2;
+  View<Ball> balls;
   View<const std::uint32_t> order;
-  View<Ball> to;
+  View<Ball> ordered;
 
-  AERATE_HD void operator()(std::size_t i) const { to[i] = from[order[i]]; }
+  AERATE_HD void operator()(unsigned step, std::size_t i) const {
+    if (step == 0) {
+      ordered[i] = balls[order[i]];
+    } else {
+      balls[i] = ordered[i];
+    }
+  }
 };
 
 enum class EnterPass { mark_inside_and_count, link };
@@ -196,16 +204,25 @@ struct EnterLayer {
 // Puts balls into the order of a curve that fills the box: those near in space are asked for together, and
 // should be near in memory.
 template <typename Executor>
-void order_along_curve(const Executor& executor, const Box3d& box, View<Ball> balls) {
-  using namespace ball_grid_detail;
-  auto keys = executor.template allocate<std::uint64_t>(balls.size);
-  auto order = executor.template allocate<std::uint32_t>(balls.size);
-  auto ordered = executor.template allocate<Ball>(balls.size);
-  executor.for_each_index(balls.size, BallKeys{balls, CurveFrame(box), keys.view(), order.view()});
-  executor.sort_pairs(keys.view(), order.view());
-  executor.for_each_index(balls.size, GatherBalls{balls, order.view(), ordered.view()});
-  executor.for_each_index(balls.size, CopyElements<Ball>{ordered.view(), balls});
-}
+class BallOrder {
+ public:
+  void order(const Executor& executor, const Box3d& box, View<Ball> balls) {
+    using namespace ball_grid_detail;
+    if (balls.size < 2) return;
+    keys_.resize(executor, balls.size);
+    order_.resize(executor, balls.size);
+    ordered_.resize(executor, balls.size);
+    executor.for_each_index(balls.size, BallKeys{balls, CurveFrame(box), keys_.view(), order_.view()});
+    executor.sort_pairs(keys_.view(), order_.view());
+    executor.for_each_step(ReorderBalls::kSteps, balls.size,
+                           ReorderBalls{balls, order_.view(), ordered_.view()});
+  }
+
+ private:
+  GrowingBuffer<Executor, std::uint64_t> keys_;
+  GrowingBuffer<Executor, std::uint32_t> order_;
+  GrowingBuffer<Executor, Ball> ordered_;
+};
 
 template <typename Executor>
 class BallGrid {

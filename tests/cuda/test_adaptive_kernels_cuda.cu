@@ -355,6 +355,47 @@ TEST_F(AdaptiveKernelsCuda, SearchesAndSelection) {
 }
 
 template <typename Executor>
+std::pair<Bytes, Bytes> settle(const Executor& executor, const Job& job) {
+  using namespace adaptive_detail;
+  Packed<Executor> packed(executor, job);
+  // Where the largest balls might go: points of a grid that are far enough from everything.
+  const Settling settling{0.4, 0.4};
+  std::vector<Candidate> starts;
+  for (const Vec3d& p : points_in(job.input.box, 3000)) starts.push_back({p, 0.45, 0.45});
+  auto candidates = executor.upload(std::span<const Candidate>(starts));
+  auto found = executor.template allocate<std::uint8_t>(starts.size());
+  executor.for_each_index(starts.size(), SetAll<std::uint8_t>{found.view(), 1});
+  executor.for_each_index(starts.size(),
+                          Settle{packed.field(), settling, 1e-12, candidates.view(), found.view()});
+  return {bytes_at(executor, candidates.view()), bytes_at(executor, found.view())};
+}
+
+TEST_F(AdaptiveKernelsCuda, LargestBallsSettle) {
+  const Job job;
+  const auto cpu = settle(SerialExecutor{}, job);
+  EXPECT_GT(std::count(cpu.second.begin(), cpu.second.end(), 1), 20);
+  EXPECT_GT(std::count(cpu.second.begin(), cpu.second.end(), 0), 20);
+  EXPECT_EQ(settle(CudaExecutor(0), job), cpu);
+}
+
+template <typename Executor>
+Bytes order_balls(const Executor& executor, const Job& job, std::size_t count) {
+  std::vector<Ball> balls;
+  for (const Vec3d& p : points_in(job.input.box, count)) balls.push_back({p, 0.1});
+  auto uploaded = executor.upload(std::span<const Ball>(balls));
+  BallOrder<Executor>().order(executor, job.input.box, uploaded.view());
+  return bytes_at(executor, uploaded.view());
+}
+
+// In one block and in several.
+TEST_F(AdaptiveKernelsCuda, OrderOfBalls) {
+  const Job job;
+  for (const std::size_t count : {1, 500, 5000}) {
+    EXPECT_EQ(order_balls(CudaExecutor(0), job, count), order_balls(SerialExecutor{}, job, count));
+  }
+}
+
+template <typename Executor>
 std::pair<Bytes, Bytes> run_lattice(const Executor& executor, const Job& job, std::uint32_t trial) {
   Packed<Executor> packed(executor, job);
   const Lattice lattice = make_lattice(job.input.box, 0.4, 0.5, trial);

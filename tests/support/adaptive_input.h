@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/mesh.h"
 #include "kernels/adaptive_packing.h"
 
@@ -12,6 +14,7 @@ inline kernels::AdaptiveInput adaptive_input(const Mesh& mesh) {
   input.positions = mesh.positions;
   input.triangles = mesh.triangles;
   input.box = {to_double(box.lower), to_double(box.upper)};
+  input.volume = std::abs(signed_volume(mesh));
   return input;
 }
 
