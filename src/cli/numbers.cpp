@@ -25,7 +25,7 @@ CLI::Validator number_between(std::optional<double> least, double most, const st
 CLI::Validator whole_number_between(double least, double most, const std::string& unit) {
   const CLI::Validator in_range = number_between(least, most, unit);
   const auto check = [in_range](const std::string& text) -> std::string {
-    const std::string fault = in_range(text);
+    std::string fault = in_range(text);
     if (!fault.empty()) return fault;
     double number = 0;
     std::from_chars(text.data(), text.data() + text.size(), number);
