@@ -262,18 +262,10 @@ class CellTree {
     bounds_.resize(executor_, count);
   }
 
-  // Calls piece(first, count) for so many elements in pieces.
-  template <typename Piece>
-  void in_pieces(std::size_t total, Piece piece) {
-    for (std::size_t first = 0; first < total; first += most_at_a_time_) {
-      piece(first, min_of(most_at_a_time_, total - first));
-    }
-  }
-
   void examine(const FieldView& field, double threshold, double finest, double least) {
     using namespace cell_tree_detail;
     useful_ = 0;
-    in_pieces(cells_.size(), [&](std::size_t first, std::size_t count) {
+    for_each_piece(cells_.size(), most_at_a_time_, [&](std::size_t first, std::size_t count) {
       fates_.resize(executor_, count);
       paced_.for_each_index(count, Examine{view(), field, first, threshold, finest, fates_.view()});
       const std::size_t parents = parents_.size(), searched = searched_.size();
@@ -293,7 +285,7 @@ class CellTree {
   void halve_parents(const FieldView& field, double threshold, double finest, double least) {
     using namespace cell_tree_detail;
     next_parents_.clear();
-    in_pieces(8 * parents_.size(), [&](std::size_t first_child, std::size_t count) {
+    for_each_piece(8 * parents_.size(), most_at_a_time_, [&](std::size_t first_child, std::size_t count) {
       children_.resize(executor_, count);
       fates_.resize(executor_, count);
       const View<const Cell> parents{parents_.view().data + first_child / 8, count / 8};
@@ -319,7 +311,7 @@ class CellTree {
   void tidy(double least) {
     using namespace cell_tree_detail;
     std::size_t kept = 0;
-    in_pieces(cells_.size(), [&](std::size_t first, std::size_t count) {
+    for_each_piece(cells_.size(), most_at_a_time_, [&](std::size_t first, std::size_t count) {
       children_.resize(executor_, count);
       const View<const Cell> cells{cells_.view().data + first, count};
       const View<const double> bounds{bounds_.view().data + first, count};

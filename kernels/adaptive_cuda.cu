@@ -15,7 +15,7 @@ AdaptiveResult pack_adaptive_on_cuda(int device, const AdaptiveInput& input) {
                     "the index of " + std::to_string(input.triangles.size()) + " triangles needs about " +
                         std::to_string(needed >> 10) + " KiB of device memory, and " +
                         std::to_string(free >> 10) + " KiB are free",
-                    "close other programs that use the device, or run on the CPU");
+                    kTooLittleMemoryHint);
   }
   return pack_adaptive(executor, input);
 }

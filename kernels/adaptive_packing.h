@@ -280,14 +280,13 @@ class AdaptivePacker {
   template <typename Piece>
   void for_each_fit(LatticeFit fit, const Lattice& lattice, Piece piece) {
     fit.lattice = lattice;
-    for (std::size_t first = 0; first < lattice.size(); first += at_a_time_) {
-      const std::size_t count = std::min(at_a_time_, lattice.size() - first);
+    for_each_piece(lattice.size(), at_a_time_, [&](std::size_t first, std::size_t count) {
       found_.resize(executor_, count);
       fit.first = first;
       fit.fits = found_.view();
       paced_.for_each_index(count, fit);
       piece(first, found_.view());
-    }
+    });
   }
 
   // Grids for clearances up to `reach`, with all balls placed so far.
@@ -323,8 +322,8 @@ class AdaptivePacker {
     const RefineLimits limits{threshold_ + shrink_, grid_.reach(), parameters_.tolerance_ratio * threshold_,
                               parameters_.region_ratio};
     std::size_t found = 0;
-    for (std::size_t first = 0; first < cells.size; first += at_a_time_) {
-      const View<const std::uint32_t> list{cells.data + first, std::min(at_a_time_, cells.size - first)};
+    for_each_piece(cells.size, at_a_time_, [&](std::size_t first, std::size_t count) {
+      const View<const std::uint32_t> list{cells.data + first, count};
       searched_.resize(executor_, list.size);
       found_.resize(executor_, list.size);
       resize_candidates(found + list.size);
@@ -337,7 +336,7 @@ class AdaptivePacker {
       const ListFound append{searched_.view(),   found_.view(), found,
                              candidates_.view(), keys_.view(),  order_.view()};
       found += executor_.select(list.size, TallyFound{found_.view()}, append).first;
-    }
+    });
     resize_candidates(found);
   }
 

@@ -7,12 +7,12 @@
 
 #include "kernels/atomic.h"
 #include "kernels/ball_grid.h"
+#include "kernels/cell_grid.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
 #include "kernels/tally.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
-#include "kernels/winding.h"
 
 // Which of many candidates become balls: every one that meets no larger one (priority-parallel acceptance).
 
@@ -42,26 +42,10 @@ enum class Verdict : std::uint32_t { undecided, accepted, rejected };
 
 // Candidates in a grid of linked lists, by rank.
 struct CandidateGrid {
-  Vec3d origin{0, 0, 0};
-  double cells_per_mm = 1;
-  std::uint32_t count_x = 1, count_y = 1, count_z = 1;
+  CellGrid cells;
   View<std::uint32_t> heads;
   View<std::uint32_t> next;
   double gap = 0;
-
-  AERATE_HD std::uint32_t cell_x(double x) const {
-    return ColumnGrid::cell_of(x - origin.x, cells_per_mm, count_x);
-  }
-  AERATE_HD std::uint32_t cell_y(double y) const {
-    return ColumnGrid::cell_of(y - origin.y, cells_per_mm, count_y);
-  }
-  AERATE_HD std::uint32_t cell_z(double z) const {
-    return ColumnGrid::cell_of(z - origin.z, cells_per_mm, count_z);
-  }
-  AERATE_HD std::size_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
-    return (static_cast<std::size_t>(z) * count_y + y) * count_x + x;
-  }
-  AERATE_HD std::size_t cell_of(Vec3d p) const { return index(cell_x(p.x), cell_y(p.y), cell_z(p.z)); }
 };
 
 // All that happens to ranked candidates until it is known which are accepted, step by step: they are linked,
@@ -88,7 +72,7 @@ struct Decide {
       }
     } else {
       // Several threads may store the same value.
-      atomic_exchange(grid.heads[grid.cell_of(ranked[i].point)], kNoBall);
+      atomic_exchange(grid.heads[grid.cells.index_at(ranked[i].point)], kNoBall);
     }
   }
 
@@ -99,19 +83,21 @@ struct Decide {
     const Candidate candidate = unranked[order[i]];
     ranked[i] = candidate;
     even[i] = Verdict::undecided;
-    grid.next[i] = atomic_exchange(grid.heads[grid.cell_of(candidate.point)], static_cast<std::uint32_t>(i));
+    grid.next[i] =
+        atomic_exchange(grid.heads[grid.cells.index_at(candidate.point)], static_cast<std::uint32_t>(i));
   }
 
   AERATE_HD Verdict verdict_on(std::size_t i, View<const Verdict> before) const {
     if (before[i] != Verdict::undecided) return before[i];
     const Candidate me = ranked[i];
     bool blocked = false;
-    const std::uint32_t cx = grid.cell_x(me.point.x), cy = grid.cell_y(me.point.y),
-                        cz = grid.cell_z(me.point.z);
-    for (std::uint32_t z = cz == 0 ? 0 : cz - 1; z <= cz + 1 && z < grid.count_z; ++z) {
-      for (std::uint32_t y = cy == 0 ? 0 : cy - 1; y <= cy + 1 && y < grid.count_y; ++y) {
-        for (std::uint32_t x = cx == 0 ? 0 : cx - 1; x <= cx + 1 && x < grid.count_x; ++x) {
-          for (std::uint32_t j = grid.heads[grid.index(x, y, z)]; j != kNoBall; j = grid.next[j]) {
+    const CellGrid& cells = grid.cells;
+    const std::uint32_t cx = cells.cell_x(me.point.x), cy = cells.cell_y(me.point.y),
+                        cz = cells.cell_z(me.point.z);
+    for (std::uint32_t z = cz == 0 ? 0 : cz - 1; z <= cz + 1 && z < cells.count_z; ++z) {
+      for (std::uint32_t y = cy == 0 ? 0 : cy - 1; y <= cy + 1 && y < cells.count_y; ++y) {
+        for (std::uint32_t x = cx == 0 ? 0 : cx - 1; x <= cx + 1 && x < cells.count_x; ++x) {
+          for (std::uint32_t j = grid.heads[cells.index(x, y, z)]; j != kNoBall; j = grid.next[j]) {
             if (j >= i || before[j] == Verdict::rejected) continue;
             const Candidate other = ranked[j];
             const double span = me.value + other.value + grid.gap;
@@ -155,15 +141,9 @@ class CandidateSelection {
 
   // For candidates in the box with values up to `largest`.
   void reset(const Box3d& box, double largest, double gap, double least_cell) {
-    const Vec3d size = box.upper - box.lower;
-    const double cell = max_of(2 * largest + gap, least_cell) * 1.000001;
-    grid_.origin = box.lower;
-    grid_.cells_per_mm = 1 / cell;
-    grid_.count_x = static_cast<std::uint32_t>(size.x / cell) + 1;
-    grid_.count_y = static_cast<std::uint32_t>(size.y / cell) + 1;
-    grid_.count_z = static_cast<std::uint32_t>(size.z / cell) + 1;
+    grid_.cells = make_cell_grid(box, max_of(2 * largest + gap, least_cell) * 1.000001);
     grid_.gap = gap;
-    const std::size_t cells = std::size_t{grid_.count_x} * grid_.count_y * grid_.count_z;
+    const std::size_t cells = grid_.cells.cell_count();
     if (heads_.size() < cells) heads_ = executor_.template allocate<std::uint32_t>(cells);
     grid_.heads = {heads_.view().data, cells};
     executor_.for_each_index(cells, SetAll<std::uint32_t>{grid_.heads, kNoBall});

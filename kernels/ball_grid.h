@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "kernels/atomic.h"
+#include "kernels/cell_grid.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/space_curve.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
-#include "kernels/winding.h"
 
 // The balls placed so far, in a grid that answers which of them is nearest.
 
@@ -44,33 +44,17 @@ struct BallGridView {
   static constexpr std::uint32_t kEmpty = 0xffffffffu;
   static constexpr std::uint32_t kInsideBit = 0x80000000u;
 
-  Vec3d origin{0, 0, 0};
-  double cell = 1;
-  double cells_per_mm = 1;
-  std::uint32_t count_x = 1, count_y = 1, count_z = 1;
+  CellGrid cells;
   double reach = 0;
   double gap = 0;
   View<std::uint32_t> heads;  // by cell: kEmpty, first entry, or kInsideBit | ball
   View<BallEntry> entries;
   View<const Ball> balls;
 
-  AERATE_HD std::uint32_t cell_x(double x) const {
-    return ColumnGrid::cell_of(x - origin.x, cells_per_mm, count_x);
-  }
-  AERATE_HD std::uint32_t cell_y(double y) const {
-    return ColumnGrid::cell_of(y - origin.y, cells_per_mm, count_y);
-  }
-  AERATE_HD std::uint32_t cell_z(double z) const {
-    return ColumnGrid::cell_of(z - origin.z, cells_per_mm, count_z);
-  }
-  AERATE_HD std::size_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
-    return (static_cast<std::size_t>(z) * count_y + y) * count_x + x;
-  }
-
   // The ball of least clearance at p, if that is below min(limit, reach). Ties go to the smaller index.
   AERATE_HD NearestBall nearest(Vec3d p, double limit) const {
     NearestBall best{min_of(limit, reach), kNoBall};
-    const std::uint32_t head = heads[index(cell_x(p.x), cell_y(p.y), cell_z(p.z))];
+    const std::uint32_t head = heads[cells.index_at(p)];
     if (head == kEmpty) return best;
     if ((head & kInsideBit) != 0) {
       const std::uint32_t ball = head & ~kInsideBit;
@@ -95,18 +79,6 @@ struct BallGridView {
 };
 
 namespace ball_grid_detail {
-
-struct CellRange {
-  std::uint32_t x0, x1, y0, y1, z0, z1;
-
-  AERATE_HD CellRange(const BallGridView& grid, Vec3d centre, double radius)
-      : x0(grid.cell_x(centre.x - radius)),
-        x1(grid.cell_x(centre.x + radius)),
-        y0(grid.cell_y(centre.y - radius)),
-        y1(grid.cell_y(centre.y + radius)),
-        z0(grid.cell_z(centre.z - radius)),
-        z1(grid.cell_z(centre.z + radius)) {}
-};
 
 // Squared distances from a coordinate to the nearest and the farthest point of a cell along one axis.
 struct AxisDistances {
@@ -167,17 +139,18 @@ struct EnterLayer {
     const double outer = ball.radius + grid.gap + grid.reach;
     // Half the gap belongs to each ball: cells inside two balls at once cannot be.
     const double inner = ball.radius + 0.5 * grid.gap;
-    const CellRange range(grid, ball.centre, outer);
+    const Vec3d reach{outer, outer, outer};
+    const CellBox range(grid.cells, ball.centre - reach, ball.centre + reach);
     const std::uint32_t z = range.z0 + static_cast<std::uint32_t>(i % layers);
     if (z > range.z1) return;
-    const AxisDistances dz(ball.centre.z, grid.origin.z, grid.cell, z);
+    const AxisDistances dz(ball.centre.z, grid.cells.origin.z, grid.cells.cell_size, z);
     std::uint32_t entry = pass == EnterPass::link ? first_entries[i] : 0;
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
-      const AxisDistances dy(ball.centre.y, grid.origin.y, grid.cell, y);
+      const AxisDistances dy(ball.centre.y, grid.cells.origin.y, grid.cells.cell_size, y);
       for (std::uint32_t x = range.x0; x <= range.x1; ++x) {
-        const AxisDistances dx(ball.centre.x, grid.origin.x, grid.cell, x);
+        const AxisDistances dx(ball.centre.x, grid.cells.origin.x, grid.cells.cell_size, x);
         if (dx.nearest_squared + dy.nearest_squared + dz.nearest_squared > outer * outer) continue;
-        const std::size_t cell = grid.index(x, y, z);
+        const std::size_t cell = grid.cells.index(x, y, z);
         const bool inside = dx.farthest_squared + dy.farthest_squared + dz.farthest_squared <= inner * inner;
         if (pass == EnterPass::mark_inside_and_count) {
           if (inside) {
@@ -232,7 +205,7 @@ class BallGrid {
 
   BallGridView view() { return view_; }
   double reach() const { return view_.reach; }
-  double cell() const { return view_.cell; }
+  double cell() const { return view_.cells.cell_size; }
 
   // A grid over the box for clearances up to `reach`, with all balls that have been entered so far.
   //   most_at_a_time: layers of balls that are worked on at a time, four bytes each
@@ -242,15 +215,10 @@ class BallGrid {
     const double volume = max_of(size.x, reach) * max_of(size.y, reach) * max_of(size.z, reach);
     constexpr double kCellToReach = 1.4;  // smaller cells cost more to fill than they save
     const double cell = max_of(kCellToReach * reach, std::cbrt(volume / most_cells()));
-    view_.origin = box.lower;
-    view_.cell = cell;
-    view_.cells_per_mm = 1 / cell;
-    view_.count_x = static_cast<std::uint32_t>(size.x / cell) + 1;
-    view_.count_y = static_cast<std::uint32_t>(size.y / cell) + 1;
-    view_.count_z = static_cast<std::uint32_t>(size.z / cell) + 1;
+    view_.cells = make_cell_grid(box, cell);
     view_.reach = reach;
     view_.gap = gap;
-    const std::size_t count = std::size_t{view_.count_x} * view_.count_y * view_.count_z;
+    const std::size_t count = view_.cells.cell_count();
     if (heads_.size() < count) {
       heads_ = {};
       heads_ = executor_.template allocate<std::uint32_t>(count);
@@ -291,8 +259,8 @@ class BallGrid {
 
   void enter(std::size_t first, std::size_t last, double largest) {
     using namespace ball_grid_detail;
-    const double across = 2 * (largest + view_.gap + view_.reach) * view_.cells_per_mm;
-    const auto layers = static_cast<std::uint32_t>(min_of(across + 3, view_.count_z * 1.0));
+    const double across = 2 * (largest + view_.gap + view_.reach) * view_.cells.cells_per_mm;
+    const auto layers = static_cast<std::uint32_t>(min_of(across + 3, view_.cells.count_z * 1.0));
     const std::size_t at_a_time = max_of(most_at_a_time_ / layers, std::size_t{1});
     for (std::size_t begin = first; begin < last; begin += at_a_time) {
       const std::size_t count = min_of(at_a_time, last - begin) * layers;

@@ -31,6 +31,10 @@ class CudaError : public std::runtime_error {
   std::string hint_;
 };
 
+// What to try when a device's memory does not suffice.
+inline constexpr const char* kTooLittleMemoryHint =
+    "close other programs that use the device, or run on the CPU";
+
 // What the CUDA executor was built with ("CUDA 13.0, for 75-virtual"); empty if it was left out.
 std::string cuda_build();
 

@@ -37,7 +37,7 @@ CudaError::Kind kind_of(cudaError_t error) {
 std::string hint_for(cudaError_t error) {
   switch (error) {
     case cudaErrorMemoryAllocation:
-      return "close other programs that use the device, or run on the CPU";
+      return kTooLittleMemoryHint;
     case cudaErrorInsufficientDriver:
     case cudaErrorSystemDriverMismatch:
       return "install an NVIDIA driver as new as " + cuda_build() + ", or run on the CPU";

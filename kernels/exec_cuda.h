@@ -112,8 +112,8 @@ inline constexpr unsigned kSelectBlock = 256;
 inline constexpr std::size_t kSelectRun = 8;
 inline constexpr std::size_t kSelectTile = kSelectRun * kSelectBlock;
 
-// Sums within a block by shuffles. Ours and not cub::BlockScan, whose headers double the time that every file
-// with a kernel takes to compile.
+// Sums within a block by shuffles. Ours and not cub::BlockScan, whose headers every file with a kernel would
+// have to compile.
 struct TallySums {
   Tally before;  // of the threads before this one
   Tally all;     // of the whole block

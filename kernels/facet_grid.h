@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "kernels/atomic.h"
+#include "kernels/cell_grid.h"
 #include "kernels/facet.h"
 #include "kernels/point_triangle.h"
 #include "kernels/projected_triangle.h"
@@ -16,41 +17,6 @@
 // (4 bytes a cell) that tells in eight look-ups whether a box of cells holds any facet at all.
 
 namespace aerate::kernels {
-
-// Cells along x run fastest. `axis_cell` is monotone: what lies between two coordinates lies between their
-// cells.
-struct CellGrid {
-  Vec3d origin{0, 0, 0};
-  double cells_per_mm = 1;
-  double cell_size = 1;  // mm
-  std::uint32_t count_x = 1, count_y = 1, count_z = 1;
-
-  AERATE_HD static std::uint32_t axis_cell(double distance, double cells_per_mm, std::uint32_t count) {
-    const double cell = distance * cells_per_mm;
-    if (!(cell > 0)) return 0;
-    return cell >= static_cast<double>(count) ? count - 1 : static_cast<std::uint32_t>(cell);
-  }
-  AERATE_HD std::uint32_t cell_x(double x) const { return axis_cell(x - origin.x, cells_per_mm, count_x); }
-  AERATE_HD std::uint32_t cell_y(double y) const { return axis_cell(y - origin.y, cells_per_mm, count_y); }
-  AERATE_HD std::uint32_t cell_z(double z) const { return axis_cell(z - origin.z, cells_per_mm, count_z); }
-  AERATE_HD std::size_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
-    return (static_cast<std::size_t>(z) * count_y + y) * count_x + x;
-  }
-  AERATE_HD std::size_t cell_count() const { return static_cast<std::size_t>(count_x) * count_y * count_z; }
-};
-
-// A box of cells, bounds included.
-struct CellBox {
-  std::uint32_t x0, x1, y0, y1, z0, z1;
-
-  AERATE_HD CellBox(const CellGrid& grid, Vec3d lower, Vec3d upper)
-      : x0(grid.cell_x(lower.x)),
-        x1(grid.cell_x(upper.x)),
-        y0(grid.cell_y(lower.y)),
-        y1(grid.cell_y(upper.y)),
-        z0(grid.cell_z(lower.z)),
-        z1(grid.cell_z(upper.z)) {}
-};
 
 // What a kernel needs to ask about distances to facets.
 struct FacetGridView {
@@ -95,7 +61,7 @@ struct FacetGridView {
     if (is_empty(box)) return false;
     const double distance_squared = distance * distance;
     // Most spheres that are too near are found out in the centre's own cell.
-    const std::size_t own = grid.index(grid.cell_x(p.x), grid.cell_y(p.y), grid.cell_z(p.z));
+    const std::size_t own = grid.index_at(p);
     if (any_nearer(p, distance_squared, offsets[own], offsets[own + 1])) return true;
     // A little more than the distance, since cell bounds are rounded.
     const double reach_squared = distance_squared * (1 + 1e-9);
@@ -227,19 +193,6 @@ struct FacetGrid {
     return (offsets.size() + references.size() + summed.size()) * sizeof(std::uint32_t);
   }
 };
-
-// The grid over `box` (of all facets) with cells of `cell_size` mm.
-inline CellGrid make_cell_grid(const Box3d& box, double cell_size) {
-  CellGrid grid;
-  grid.origin = box.lower;
-  grid.cell_size = cell_size;
-  grid.cells_per_mm = 1.0 / cell_size;
-  const Vec3d extent = box.upper - box.lower;
-  grid.count_x = static_cast<std::uint32_t>(extent.x * grid.cells_per_mm) + 1;
-  grid.count_y = static_cast<std::uint32_t>(extent.y * grid.cells_per_mm) + 1;
-  grid.count_z = static_cast<std::uint32_t>(extent.z * grid.cells_per_mm) + 1;
-  return grid;
-}
 
 // Enters the facets, which must stay alive beside the index. O(facets + cells + references).
 // Throws std::length_error for more than 2^32 - 1 references.

@@ -34,7 +34,7 @@ HexagonalResult pack_hexagonal_on_cuda(int device, const HexagonalInput& input) 
                         std::to_string((hexagonal_index_bytes(input, max_of(rows, 1u)) >> 10) + 1) +
                         " KiB of device memory even in the thinnest strips of the model, and " +
                         std::to_string(free >> 10) + " KiB are free",
-                    "close other programs that use the device, or run on the CPU");
+                    kTooLittleMemoryHint);
   }
   while (true) {
     try {

@@ -28,6 +28,12 @@ struct OneStep {
   AERATE_HD void operator()(std::size_t i) const { f(step, i); }
 };
 
+// Calls piece(first, count) for runs of at most `most` elements that make up `total`.
+template <typename Piece>
+void for_each_piece(std::size_t total, std::size_t most, Piece piece) {
+  for (std::size_t first = 0; first < total; first += most) piece(first, std::min(most, total - first));
+}
+
 // Runs long loops on an executor in pieces of about a quarter of a second and calls `poll` between them; what
 // that throws ends the loop. The sizes of the pieces follow the clock, on which no result depends.
 template <typename Executor>

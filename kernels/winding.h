@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/atomic.h"
+#include "kernels/cell_grid.h"
 #include "kernels/facet.h"
 #include "kernels/projected_triangle.h"
 #include "kernels/vec.h"
@@ -64,20 +65,15 @@ AERATE_HD inline int facet_crossing(const Facet& facet, Vec3d p) {
 
 }  // namespace winding_detail
 
-// Grid of columns along z. `cell_of` is monotone, so a point that lies within a facet's bounds falls into one
-// of the cells the facet was entered in.
+// Grid of columns along z. `axis_cell` is monotone, so a point that lies within a facet's bounds falls into
+// one of the cells the facet was entered in.
 struct ColumnGrid {
   double origin_x = 0, origin_y = 0;
   double cells_per_mm = 1;
   std::uint32_t count_x = 1, count_y = 1;
 
-  AERATE_HD static std::uint32_t cell_of(double distance, double cells_per_mm, std::uint32_t count) {
-    const double cell = distance * cells_per_mm;
-    if (!(cell > 0)) return 0;
-    return cell >= static_cast<double>(count) ? count - 1 : static_cast<std::uint32_t>(cell);
-  }
-  AERATE_HD std::uint32_t cell_x(double x) const { return cell_of(x - origin_x, cells_per_mm, count_x); }
-  AERATE_HD std::uint32_t cell_y(double y) const { return cell_of(y - origin_y, cells_per_mm, count_y); }
+  AERATE_HD std::uint32_t cell_x(double x) const { return axis_cell(x - origin_x, cells_per_mm, count_x); }
+  AERATE_HD std::uint32_t cell_y(double y) const { return axis_cell(y - origin_y, cells_per_mm, count_y); }
   AERATE_HD std::size_t cell(std::uint32_t x, std::uint32_t y) const {
     return static_cast<std::size_t>(y) * count_x + x;
   }

@@ -309,9 +309,9 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   stages.order = bytes_at(executor, View<std::uint32_t>{order.view().data, count});
 
   CandidateGrid grid;
-  grid.origin = job.input.box.lower;
-  grid.cells_per_mm = 1 / (2.1 * kReach);
-  grid.count_x = grid.count_y = grid.count_z = 8;
+  grid.cells.origin = job.input.box.lower;
+  grid.cells.cells_per_mm = 1 / (2.1 * kReach);
+  grid.cells.count_x = grid.cells.count_y = grid.cells.count_z = 8;
   grid.gap = kGap;
   auto heads = executor.template allocate<std::uint32_t>(8 * 8 * 8);
   auto next = executor.template allocate<std::uint32_t>(count);
