@@ -6,13 +6,19 @@
 
 namespace aerate::cli {
 
+std::optional<double> parse_number(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
+  return is_number ? std::optional(number) : std::nullopt;
+}
+
 CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit) {
   const std::string suffix = unit.empty() ? "" : " " + unit;
   const auto check = [least, most, suffix](const std::string& text) -> std::string {
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
-    if (!is_number) return fmt::format("'{}' is not a number", text);
+    const std::optional<double> parsed = parse_number(text);
+    if (!parsed) return fmt::format("'{}' is not a number", text);
+    const double number = *parsed;
     if (number > most) return fmt::format("{}{} is too much (at most {}{})", text, suffix, most, suffix);
     if (least && number < *least)
       return fmt::format("{}{} is too little (at least {}{})", text, suffix, *least, suffix);
@@ -27,8 +33,7 @@ CLI::Validator whole_number_between(double least, double most, const std::string
   const auto check = [in_range](const std::string& text) -> std::string {
     std::string fault = in_range(text);
     if (!fault.empty()) return fault;
-    double number = 0;
-    std::from_chars(text.data(), text.data() + text.size(), number);
+    const double number = parse_number(text).value();
     return number == std::floor(number) ? std::string() : fmt::format("'{}' is not a whole number", text);
   };
   return CLI::Validator(check, "");

@@ -3,8 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace aerate::cli {
+
+// The finite number that is the whole text, if it is one.
+std::optional<double> parse_number(std::string_view text);
 
 // Accepts a number in [least, most], or in (0, most] with `least` absent; `unit` is for the message.
 CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit);

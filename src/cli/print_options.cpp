@@ -1,8 +1,8 @@
 #include "cli/print_options.h"
 
-#include <charconv>
 #include <fmt/format.h>
 #include <string>
+#include <string_view>
 
 #include "cli/numbers.h"
 #include "core/error.h"
@@ -13,13 +13,11 @@ namespace {
 constexpr const char* kGroup = "The print, for filament";
 
 // "15" or "15%", as a share.
-std::optional<double> parse_percent(std::string text) {
-  if (text.ends_with('%')) text.pop_back();
-  double percent = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), percent);
-  if (error != std::errc() || end != text.data() + text.size() || !(percent >= 0 && percent <= 100))
-    return {};
-  return percent / 100;
+std::optional<double> parse_percent(std::string_view text) {
+  if (text.ends_with('%')) text.remove_suffix(1);
+  const std::optional<double> percent = parse_number(text);
+  if (!percent || *percent < 0 || *percent > 100) return {};
+  return *percent / 100;
 }
 
 void require_lines_that_fit(const PrintSettings& settings, const PackingLimits& limits) {

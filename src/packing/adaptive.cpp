@@ -54,39 +54,41 @@ kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits,
   return input;
 }
 
-double most_spheres(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options) {
+// How many spheres of the least radius, each with half the gap around it, have so much volume; no more than
+// are wanted.
+double smallest_spheres_in(double volume, const PackingLimits& limits, const AdaptiveOptions& options) {
+  constexpr double kSphereVolume = 4.18879;
   const double smallest = limits.min_radius + limits.gap / 2;
   const auto wanted = static_cast<double>(options.max_count);
   if (!(smallest > 0)) return wanted;
+  return std::min(wanted, volume / (kSphereVolume * smallest * smallest * smallest));
+}
+
+double most_spheres(double volume, const PackingLimits& limits, const AdaptiveOptions& options) {
   // The least radius is that of few at first, but of most at the end (measured on models of all kinds).
   constexpr double kShareOfVolume = 0.4;
-  constexpr double kSphereVolume = 4.18879;
-  return std::min(wanted, kShareOfVolume * std::abs(signed_volume(mesh)) /
-                              (kSphereVolume * smallest * smallest * smallest));
+  return smallest_spheres_in(kShareOfVolume * volume, limits, options);
 }
 
 // How many spheres there are going to be, within a factor of two on the models of docs/cuda.md: a share of
 // the volume beyond the wall, in units of the smallest sphere's, that falls as the radii spread.
-double expected_spheres(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options) {
+double expected_spheres(const Mesh& mesh, double volume, const PackingLimits& limits,
+                        const AdaptiveOptions& options) {
   constexpr double kShareOfEqual = 0.74, kShareOfWide = 0.05, kFall = 2.27;
-  constexpr double kSphereVolume = 4.18879;
-  const double smallest = limits.min_radius + limits.gap / 2;
-  const auto wanted = static_cast<double>(options.max_count);
-  if (!(smallest > 0)) return wanted;
-  const double volume = std::abs(signed_volume(mesh));
   const double beyond_wall = std::max(volume - surface_area(mesh) * limits.wall, 0.05 * volume);
-  const double spread = (limits.max_radius + limits.gap / 2) / smallest;
+  const double spread = (limits.max_radius + limits.gap / 2) / (limits.min_radius + limits.gap / 2);
   const double share = std::max(kShareOfEqual * std::pow(spread, -kFall), kShareOfWide);
-  return std::min(wanted, share * beyond_wall / (kSphereVolume * smallest * smallest * smallest));
+  return smallest_spheres_in(share * beyond_wall, limits, options);
 }
 
 // Seconds for a facet to be indexed and for a sphere to be placed, on one thread of a CPU (docs/cuda.md tells
 // how they were measured).
-WorkEstimate estimate_work(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options) {
+WorkEstimate estimate_work(const Mesh& mesh, double volume, const PackingLimits& limits,
+                           const AdaptiveOptions& options) {
   constexpr double kSecondsPerFacet = 0.8e-6;
   constexpr double kSecondsPerSphere = 450e-6;
   const auto facets = static_cast<double>(mesh.triangles.size());
-  const double spheres = expected_spheres(mesh, limits, options);
+  const double spheres = expected_spheres(mesh, volume, limits, options);
   return {facets * kSecondsPerFacet + spheres * kSecondsPerSphere,
           facets * (sizeof(Triangle) + sizeof(Vec3f)) + spheres * sizeof(kernels::Ball)};
 }
@@ -119,8 +121,9 @@ Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const Adapt
                : kernels::pack_adaptive(kernels::TbbExecutor{}, input);
   };
   const auto on_cuda = [&](int index) { return kernels::pack_adaptive_on_cuda(index, input); };
-  Packing packing = packing_of(
-      run_on_device(device, estimate_work(mesh, limits, options), monitor, use, on_cpu, on_cuda), limits);
+  Packing packing = packing_of(run_on_device(device, estimate_work(mesh, input.volume, limits, options),
+                                             monitor, use, on_cpu, on_cuda),
+                               limits);
   packing.device = std::move(use);
   return packing;
 }
@@ -130,7 +133,8 @@ double estimate_adaptive_bytes(const Mesh& mesh, const PackingLimits& limits,
   const double index_bytes = static_cast<double>(mesh.triangles.size()) * (4 * sizeof(kernels::Facet) + 64);
   // Each sphere comes with the cells around it and its entries in the grid.
   constexpr double kBytesPerSphere = 3000;
-  return index_bytes + most_spheres(mesh, limits, options) * kBytesPerSphere + (1 << 24);
+  return index_bytes + most_spheres(std::abs(signed_volume(mesh)), limits, options) * kBytesPerSphere +
+         (1 << 24);
 }
 
 }  // namespace aerate

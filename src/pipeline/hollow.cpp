@@ -95,7 +95,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
 
   if (prints_filament(options)) {
     log.stage("predict");
-    report.print = predict_print(solid, plan, options, log);
+    report.print = predict_print(model.mesh, solid, plan, options, log);
   }
 
   log.stage("write");

@@ -39,18 +39,6 @@ constexpr const char* kOtherWays =
                   saving_infill(break_even_infill(limits.max_radius, settings)), kOtherWays));
 }
 
-// The outer surface of a solid, alone.
-Mesh outer_surface(const Solid& solid) {
-  Mesh outer;
-  outer.positions.assign(
-      solid.mesh.positions.begin(),
-      solid.mesh.positions.begin() + static_cast<std::ptrdiff_t>(solid.outer_vertex_count));
-  outer.triangles.assign(
-      solid.mesh.triangles.begin(),
-      solid.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(solid.outer_triangle_count));
-  return outer;
-}
-
 std::string change_in_words(const PrintPrediction& prediction) {
   return fmt::format("{:.2f} instead of {:.2f} cm3 of filament ({:+.1f} %) at {:g} % infill",
                      prediction.filament_after_mm3 / 1000, prediction.filament_before_mm3 / 1000,
@@ -88,13 +76,13 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
   return request;
 }
 
-PrintPrediction predict_print(const Solid& solid, const VoidPlan& plan, const HollowOptions& options,
-                              Monitor& monitor) {
+PrintPrediction predict_print(const Mesh& outer, const Solid& solid, const VoidPlan& plan,
+                              const HollowOptions& options, Monitor& monitor) {
   PrintPrediction prediction;
   prediction.described = options.print.has_value();
   prediction.settings = options.print.value_or(PrintSettings{});
   const PrintSettings& settings = prediction.settings;
-  const FilamentUse whole = filament_use(outer_surface(solid), settings);
+  const FilamentUse whole = filament_use(outer, settings);
   monitor.check_interrupted();
   const FilamentUse hollow = filament_use(solid.mesh, settings);
   monitor.check_interrupted();

@@ -33,9 +33,9 @@ bool prints_filament(const HollowOptions& options);
 PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptions& options,
                                        Monitor& monitor);
 
-// Throws NothingToRemoveError if the print is described and would become heavier, unless the options allow
-// it; then it is a notice.
-PrintPrediction predict_print(const Solid& solid, const VoidPlan& plan, const HollowOptions& options,
-                              Monitor& monitor);
+// `outer`: the surface of `solid` without the voids. Throws NothingToRemoveError if the print is described
+// and would become heavier, unless the options allow it; then it is a notice.
+PrintPrediction predict_print(const Mesh& outer, const Solid& solid, const VoidPlan& plan,
+                              const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate
