@@ -46,7 +46,7 @@ struct View {
 };
 
 struct FarSample {
-  Vec3d point;
+  Vec3d point{0, 0, 0};
   std::uint32_t triangle = 0;
   double distance = 0;
   View view;
@@ -57,7 +57,7 @@ class Surroundings {
   explicit Surroundings(const Mesh& mesh)
       : bvh_(mesh.positions, mesh.triangles),
         winding_(mesh.positions, mesh.triangles),
-        box_(bounding_box(mesh)) {}
+        box_{to_double(bounding_box(mesh).lower), to_double(bounding_box(mesh).upper)} {}
 
   View look(Vec3d point, Vec3d normal) const {
     View view;
@@ -99,7 +99,7 @@ class Surroundings {
 
   kernels::HostTriangleBvh bvh_;
   kernels::HostWinding winding_;
-  Box3f box_;
+  Box3d box_;
 };
 
 Vec3d normal_of(const Mesh& mesh, std::uint32_t triangle) {

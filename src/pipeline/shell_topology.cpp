@@ -28,7 +28,7 @@ class DirectedEdges {
       if (offsets_[i] > 0) ++vertex_count_;
       offsets_[i] += offsets_[i - 1];
     }
-    edges_.resize(3 * triangles.size());
+    edges_.assign(3 * triangles.size(), 0);
     std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
     for (std::uint32_t e = 0; e < edges_.size(); ++e) edges_[next[start_of(e) - lowest_]++] = e;
   }

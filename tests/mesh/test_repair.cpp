@@ -95,8 +95,9 @@ TEST(OrientConsistently, FlippedTrianglesAreTurnedBack) {
     const Repaired repaired = orient_consistently(mesh);
     EXPECT_EQ(repaired.mesh.triangles, torus.triangles);
     ASSERT_EQ(repaired.notices.size(), 1u);
-    if (flips == 1)
+    if (flips == 1) {
       EXPECT_EQ(repaired.notices.front(), "1 triangle of 1 shell turned to agree with its neighbours");
+    }
     EXPECT_TRUE(inspect(repaired.mesh).closed());
   }
 }

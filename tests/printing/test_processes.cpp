@@ -21,8 +21,11 @@ TEST(Processes, AreTheFourAndFdmIsTheDefault) {
 TEST(Processes, EveryFigureHasASourceAndCanBePrinted) {
   for (const Process& process : processes()) {
     SCOPED_TRACE(process.name);
-    for (const auto& figure : process.limits)
-      if (figure) EXPECT_GT(figure->source.size(), 3U);
+    for (const auto& figure : process.limits) {
+      if (figure) {
+        EXPECT_GT(figure->source.size(), 3U);
+      }
+    }
     EXPECT_GE(process[Limit::wall]->value, process[Limit::least_wall]->value);
     EXPECT_GE(process[Limit::gap]->value, process[Limit::least_gap]->value);
     EXPECT_LT(process[Limit::min_radius]->value, process[Limit::max_radius]->value);
@@ -37,7 +40,9 @@ TEST(Processes, WhatLeavesMaterialInVoidsHasChannelsThatFitIntoThem) {
     EXPECT_EQ(needed, process.name != "fdm");
     EXPECT_EQ(process[Limit::channel].has_value(), needed);
     EXPECT_EQ(process[Limit::escape_hole].has_value(), needed);
-    if (needed) EXPECT_LT(process[Limit::channel]->value, 2 * process[Limit::min_radius]->value);
+    if (needed) {
+      EXPECT_LT(process[Limit::channel]->value, 2 * process[Limit::min_radius]->value);
+    }
   }
 }
 
