@@ -38,9 +38,10 @@ struct AdaptiveParameters {
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
   double max_volume = kUnbounded;  // mm3, of all balls
   double level_ratio = 0.9;        // balls of a level are at least this much of its largest
-  double cell_ratio = 1.8;         // half diagonal of searched cells to the level's least radius
-  double region_ratio = 1.25;
-  double settle_reach = 1;  // to the largest radius; 0 for balls of it that stay where there is room
+  double cell_ratio = 2.2;         // half diagonal of searched cells to the level's least radius
+  double region_ratio = 1.0;
+  double settle_cell_ratio = 1.4;  // the same for balls that settle: more starts, better places
+  double settle_reach = 1;         // to the largest radius; 0 for balls of it that stay where there is room
   double least_lattice_share = 0.25;  // of the volume, with half the gap around each ball: else no lattice
   std::uint32_t lattice_trials = 16;
   double tolerance_ratio = 1e-4;  // precision of the maxima to the level's least radius
@@ -301,8 +302,9 @@ class AdaptivePacker {
   bool place_round(const Settling* settling = nullptr) {
     using namespace adaptive_detail;
     ++round_count_;
-    const View<const std::uint32_t> cells = tree_.refine(
-        field(), threshold_, parameters_.cell_ratio * threshold_, max_of(parameters_.min_radius, 0.0));
+    const double cell_ratio = settling != nullptr ? parameters_.settle_cell_ratio : parameters_.cell_ratio;
+    const View<const std::uint32_t> cells =
+        tree_.refine(field(), threshold_, cell_ratio * threshold_, max_of(parameters_.min_radius, 0.0));
     if (cells.size == 0) return false;
     search_count_ += cells.size;
     search(cells, settling);

@@ -42,6 +42,10 @@ AERATE_HD inline double distance_squared_to_box(Vec3d p, const Box3f& box) {
   return x * x + y * y + z * z;
 }
 
+AERATE_HD inline Box3f box_of(const Facet& f) {
+  return {min_of(f.a, min_of(f.b, f.c)), max_of(f.a, max_of(f.b, f.c))};
+}
+
 inline constexpr std::uint32_t kNoFacet = 0xffffffffu;
 
 struct NearestFacet {
@@ -98,6 +102,8 @@ struct TriangleBvhView {
     const std::uint32_t first = (node - first_leaf) * kLeafFacets;
     const std::uint32_t last = min_of(first + kLeafFacets, static_cast<std::uint32_t>(facets.size));
     for (std::uint32_t i = first; i < last; ++i) {
+      // Most facets of a leaf are farther than the best so far, as their boxes tell at a fifth of the cost.
+      if (distance_squared_to_box(p, box_of(facets[i])) >= best.distance_squared) continue;
       const double distance_squared = distance_squared_to_facet(p, facets[i]);
       if (distance_squared < best.distance_squared) best = {distance_squared, i};
     }
@@ -139,9 +145,9 @@ struct LeafBoxes {
     const std::size_t first = leaf * TriangleBvhView::kLeafFacets;
     const std::size_t last = min_of(first + TriangleBvhView::kLeafFacets, facets.size);
     for (std::size_t i = first; i < last; ++i) {
-      const Facet& f = facets[i];
-      box.lower = min_of(min_of(box.lower, f.a), min_of(f.b, f.c));
-      box.upper = max_of(max_of(box.upper, f.a), max_of(f.b, f.c));
+      const Box3f facet = box_of(facets[i]);
+      box.lower = min_of(box.lower, facet.lower);
+      box.upper = max_of(box.upper, facet.upper);
     }
     boxes[first_leaf + leaf] = box;
   }
