@@ -344,6 +344,25 @@ TEST(BadInput, NumbersThatMakeNoSense) {
   refused({"--no-such-option"}, "");
 }
 
+TEST(BadInput, GivenSpheresThatAreNoPackingOfTheModel) {
+  const std::string header = "x,y,z,radius,kind\n";
+  const auto refused = [&](const std::string& rows, const std::vector<std::string>& said) {
+    const Job job;
+    const auto model = job.input("block.stl", make_box({0, 0, 0}, {30, 30, 30}));
+    const auto spheres = job.input("list.csv", header + rows);
+    expect_refused(job, run(job.hollow(model, {"--spheres", spheres.string()})), kUnreadable, said);
+  };
+  refused("10,10,10,3,adaptive\n12,10,10,3,adaptive\n", {"list.csv", "sphere", "gap of -4 mm", "sphere 1"});
+  refused("10,10,10,3,adaptive\n50,10,10,3,adaptive\n", {"sphere 2", "(50.000, 10.000, 10.000)", "outside"});
+  refused("3.5,10,10,3,adaptive\n", {"sphere 1", "wall of 0.5 mm"});
+  refused("10,10,10,-3,adaptive\n", {"line 2", "radius of -3"});
+  refused("10,10,nan,3,adaptive\n", {"line 2", "not finite"});
+  refused("10,10,ten,3,adaptive\n", {"line 2", "'ten'"});
+  refused("10,10,10,3,cube\n", {"line 2", "'cube'"});
+  refused("10,10\n", {"line 2", "2 fields"});
+  refused("", {"no spheres"});
+}
+
 TEST(BadInput, UnknownMaterialListsTheKnownOnes) {
   const Job job;
   const auto model = job.input("block.stl", block());
