@@ -19,8 +19,8 @@ namespace aerate::kernels {
 // Cubes that still may hold the centre of a ball, largest at first, halved where f is of interest.
 struct Cell {
   Vec3d centre;
-  double surface;       // signed distance of the centre to the surface
-  std::uint32_t facet;  // nearest to the centre
+  double surface;  // signed distance of the centre to the surface, or less where balls are nearer than that
+  std::uint32_t facet;  // nearest to the centre, or not far from it
   std::uint32_t level;  // half diagonal = root_half_diagonal / 2^level
 
   AERATE_HD SurfaceAnchor anchor() const { return {centre, surface, facet}; }
@@ -128,7 +128,8 @@ struct MakeChildren {
     fates[i] = CellFate::dropped;
     const double by_balls = field.balls.nearest(centre, field.balls.reach).clearance;
     if (by_balls + half_diagonal < least) return;
-    const SurfaceAnchor anchor = anchor_at(field, parent.anchor(), centre);
+    const SurfaceAnchor anchor = anchor_within(field, parent.anchor(), centre, by_balls + field.wall,
+                                               half_diagonal - field.wall - least);
     const double by_surface = anchor.signed_distance - field.wall;
     if (by_surface + half_diagonal < least) return;
     const double bound = min_of(by_balls, by_surface) + half_diagonal;

@@ -33,7 +33,7 @@ struct FieldView {
 // changes by no more than the way walked, so nearby points often need not ask again.
 struct SurfaceAnchor {
   Vec3d point;
-  double signed_distance;  // 0 if nothing is known
+  double signed_distance;  // 0 if nothing is known; inside the solid it may be too small
   std::uint32_t facet;     // may be kNoFacet
 };
 
@@ -54,6 +54,25 @@ AERATE_HD inline SurfaceAnchor anchor_at(const FieldView& field, const SurfaceAn
   nearest = field.surface.nearer_than(p, nearest);
   const double distance = std::sqrt(nearest.distance_squared);
   return {p, is_inside(field, nearby, p) ? distance : -distance, nearest.facet};
+}
+
+// The same where distances of more than `most_inside`, or `most_outside` on the other side, are of no
+// concern: the signed distance is then one of at least that, and the facet any.
+AERATE_HD inline SurfaceAnchor anchor_within(const FieldView& field, const SurfaceAnchor& nearby, Vec3d p,
+                                             double most_inside, double most_outside) {
+  const double still_inside = nearby.signed_distance - length(p - nearby.point);
+  if (still_inside > max_of(most_inside, 0.0)) return {p, still_inside, nearby.facet};
+  const bool inside = is_inside(field, nearby, p);
+  // A trifle more, so that what is just as far is found.
+  const double most = max_of(inside ? most_inside : most_outside, 0.0) * (1 + 1e-12);
+  NearestFacet nearest{most * most, kNoFacet};
+  if (nearby.facet != kNoFacet) {
+    const double distance_squared = distance_squared_to_facet(p, field.surface.facets[nearby.facet]);
+    if (distance_squared < nearest.distance_squared) nearest = {distance_squared, nearby.facet};
+  }
+  nearest = field.surface.nearer_than(p, nearest);
+  const double distance = std::sqrt(nearest.distance_squared);
+  return {p, inside ? distance : -distance, nearest.facet != kNoFacet ? nearest.facet : nearby.facet};
 }
 
 // The constraint that a facet is at p, which is at `signed_distance` from it.

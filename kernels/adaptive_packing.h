@@ -38,8 +38,14 @@ struct AdaptiveParameters {
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
   double max_volume = kUnbounded;  // mm3, of all balls
   double level_ratio = 0.9;        // balls of a level are at least this much of its largest
-  double cell_ratio = 2.2;         // half diagonal of searched cells to the level's least radius
-  double region_ratio = 1.0;
+  // Cells that are searched: their half diagonal to the level's least radius, and how far a search goes, in
+  // extents of its cell. The first balls are most of the volume and little of the work, so they get finer
+  // ones.
+  double cell_ratio = 2.8;
+  double region_ratio = 0.8;
+  std::size_t first_count = 5000;
+  double first_cell_ratio = 2.2;
+  double first_region_ratio = 1.0;
   double settle_cell_ratio = 1.4;  // the same for balls that settle: more starts, better places
   double settle_reach = 1;         // to the largest radius; 0 for balls of it that stay where there is room
   double least_lattice_share = 0.25;  // of the volume, with half the gap around each ball: else no lattice
@@ -231,6 +237,8 @@ class AdaptivePacker {
     return min_of(done, 1.0);
   }
 
+  bool among_the_first() const { return balls_.size() < parameters_.first_count; }
+
   FieldView field() { return {bvh_.view, winding_.view, grid_.view(), parameters_.wall}; }
 
   // Starts from the densest lattice of balls of max_radius where that is small against the model, in the best
@@ -302,7 +310,9 @@ class AdaptivePacker {
   bool place_round(const Settling* settling = nullptr) {
     using namespace adaptive_detail;
     ++round_count_;
-    const double cell_ratio = settling != nullptr ? parameters_.settle_cell_ratio : parameters_.cell_ratio;
+    const double cell_ratio = settling != nullptr ? parameters_.settle_cell_ratio
+                              : among_the_first() ? parameters_.first_cell_ratio
+                                                  : parameters_.cell_ratio;
     const View<const std::uint32_t> cells =
         tree_.refine(field(), threshold_, cell_ratio * threshold_, max_of(parameters_.min_radius, 0.0));
     if (cells.size == 0) return false;
@@ -322,7 +332,7 @@ class AdaptivePacker {
   void search(View<const std::uint32_t> cells, const Settling* settling) {
     using namespace adaptive_detail;
     const RefineLimits limits{threshold_ + shrink_, grid_.reach(), parameters_.tolerance_ratio * threshold_,
-                              parameters_.region_ratio};
+                              among_the_first() ? parameters_.first_region_ratio : parameters_.region_ratio};
     std::size_t found = 0;
     for_each_piece(cells.size, at_a_time_, [&](std::size_t first, std::size_t count) {
       const View<const std::uint32_t> list{cells.data + first, count};
