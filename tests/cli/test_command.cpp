@@ -1,10 +1,13 @@
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/cli/job.h"
@@ -296,6 +299,47 @@ TEST(Command, PackWritesATable) {
       run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", job.output("spheres.txt")}).exit_code, 2);
 }
 
+// Each line's sphere keeps the default wall to the sides of a box.
+void expect_inside(const std::string& csv, Vec3d lower, Vec3d upper) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  std::size_t count = 0;
+  for (; std::getline(lines, line); ++count) {
+    double x = 0, y = 0, z = 0, radius = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,", &x, &y, &z, &radius), 4) << line;
+    const double inset = radius + 1.2;
+    EXPECT_TRUE(x >= lower.x + inset && x <= upper.x - inset) << line;
+    EXPECT_TRUE(y >= lower.y + inset && y <= upper.y - inset) << line;
+    EXPECT_TRUE(z >= lower.z + inset && z <= upper.z - inset) << line;
+  }
+  EXPECT_EQ(count, 40U);
+}
+
+// A block away from the origin, packed into each format: what was written is a packing in the model's own
+// coordinates, and voids made of it are the same whatever the format.
+TEST(Command, PackedSpheresOfEachFormatMakeTheSameVoids) {
+  const Job job;
+  const auto model = job.input("block.stl", make_box({100, -50, 20}, {130, -20, 50}));
+  const std::vector<std::pair<std::string, std::string>> beginnings{
+      {"csv", "x,y,z,radius,kind\n"},
+      {"json", "{\"schema\": \"aerate.spheres\", \"schema_version\": 1, \"unit\": \"mm\", \"spheres\": [\n["},
+      {"ply", "ply\nformat ascii 1.0\ncomment spheres, mm\nelement vertex "}};
+  std::string voids;
+  for (const auto& [ending, beginning] : beginnings) {
+    const auto table = job.folder() / ("spheres." + ending);
+    const ProcessResult packed = run({AERATE_EXECUTABLE, "pack", model, "-o", table, "--max-voids", "40"});
+    ASSERT_EQ(packed.exit_code, 0) << packed.err;
+    EXPECT_EQ(read_bytes(table).substr(0, beginning.size()), beginning);
+    if (ending == "csv") expect_inside(read_bytes(table), {100, -50, 20}, {130, -20, 50});
+    const auto hollow = job.output(ending + ".stl");
+    const ProcessResult result = run({AERATE_EXECUTABLE, "hollow", model, "-o", hollow, "--spheres", table});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    if (voids.empty()) voids = read_bytes(hollow);
+    EXPECT_EQ(read_bytes(hollow), voids);
+  }
+}
+
 TEST(Command, InspectTellsWhatIsWrong) {
   const Job job;
   Mesh mesh = block();
@@ -346,6 +390,30 @@ TEST(Command, InterruptLeavesNothingBehind) {
     process.send(signal);
     const ProcessResult result = process.wait();
     EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_TRUE(contains(result.err, "interrupted"));
+    EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+  }
+}
+
+// A packing of minutes ends within moments of the signal.
+TEST(Command, InterruptEndsALongPacking) {
+  const std::vector<std::vector<std::string>> methods{
+      {"adaptive", "--min-radius", "0.5", "--max-radius", "1"},
+      {"hexagonal", "--min-radius", "0.05", "--max-radius", "0.4"}};
+  for (const std::vector<std::string>& method : methods) {
+    const Job job;
+    const auto model = job.input("cube.stl", make_box({0, 0, 0}, {100, 100, 100}));
+    std::vector<std::string> command{AERATE_EXECUTABLE,         "pack",  model, "-o",
+                                     job.output("spheres.csv"), "--gap", "0",   "--packing"};
+    command.insert(command.end(), method.begin(), method.end());
+    Process process(command);
+    ASSERT_TRUE(temporary_file_appears(process, job.outputs()));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    const auto begin = std::chrono::steady_clock::now();
+    process.send(SIGINT);
+    const ProcessResult result = process.wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5)) << method.front();
+    EXPECT_EQ(result.exit_code, 130) << method.front() << ": " << result.err;
     EXPECT_TRUE(contains(result.err, "interrupted"));
     EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
   }
