@@ -188,7 +188,7 @@ struct HexagonalResult {
   // By CandidateState, all kinds together. A lattice sphere that was replaced counts as near_surface, and so
   // does each of its 61 places that stayed empty for that reason.
   std::array<std::uint64_t, kCandidateStates> state_counts{};
-  std::size_t index_bytes = 0;
+  std::size_t index_bytes = 0, index_references = 0, index_cells = 0;  // of the largest strip
   std::size_t slots_at_a_time = 0;
   std::uint32_t strips = 1;  // of the model, each with an index of its own
 };
@@ -207,13 +207,14 @@ struct HexagonalPiece {
 struct HexagonalPieces {
   std::array<std::vector<HexagonalPiece>, 4> by_kind;  // by SphereKind
   std::array<std::uint64_t, kCandidateStates> state_counts{};
-  std::size_t index_bytes = 0;
+  std::size_t index_bytes = 0, index_references = 0, index_cells = 0;
   std::size_t slots_at_a_time = 0;
   std::uint32_t strips = 0;
 
   // In lattice order, in whatever order the parts were packed. Leaves nothing here.
   HexagonalResult joined() {
-    HexagonalResult result{{}, state_counts, index_bytes, slots_at_a_time, strips};
+    HexagonalResult result{{},          state_counts,    index_bytes, index_references,
+                           index_cells, slots_at_a_time, strips};
     std::size_t total = 0;
     for (const auto& pieces : by_kind)
       for (const HexagonalPiece& piece : pieces) total += piece.spheres.size();
@@ -379,7 +380,11 @@ void pack_rows(const Executor& executor, View<const Facet> facets, const Box3d& 
                HexagonalPieces& pieces) {
   const auto winding = build_winding_index(executor, facets, input.box, region);
   const auto grid = build_facet_grid(executor, facets, cells);
-  pieces.index_bytes = max_of(pieces.index_bytes, winding.bytes() + grid.bytes());
+  if (winding.bytes() + grid.bytes() > pieces.index_bytes) {
+    pieces.index_bytes = winding.bytes() + grid.bytes();
+    pieces.index_references = winding.references.size() + grid.references.size();
+    pieces.index_cells = winding.offsets.size() + grid.offsets.size();
+  }
   ++pieces.strips;
   progress(0);
   HexagonalPacker<Executor>(executor, winding.view, grid.view, input, pieces).pack(rows, progress);

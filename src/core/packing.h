@@ -26,7 +26,9 @@ struct PackingStatistics {
   std::size_t below_min_radius = 0;   // would fit, but is smaller than min_radius
   std::size_t shrunk_by_verification = 0;
   std::size_t dropped_by_verification = 0;
-  std::size_t index_bytes = 0;  // memory of the triangle index
+  std::size_t index_bytes = 0;       // memory of the triangle index
+  std::size_t index_references = 0;  // of cells to triangles, where the index is made of cells
+  std::size_t index_cells = 0;
 };
 
 // Disjoint spheres inside a model, in the model's own coordinates, with the limits they were packed under.

@@ -94,6 +94,8 @@ Packing packing_of(kernels::HexagonalResult result, const PackingLimits& limits)
                                   packing.statistics.near_surface + packing.statistics.below_min_radius +
                                   result.spheres.size();
   packing.statistics.index_bytes = result.index_bytes;
+  packing.statistics.index_references = result.index_references;
+  packing.statistics.index_cells = result.index_cells;
   packing.spheres = std::move(result.spheres);
   return packing;
 }

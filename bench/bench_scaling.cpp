@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <ctime>
+#include <fmt/format.h>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+#include "core/monitor.h"
+#include "core/packing.h"
+#include "packing/adaptive.h"
+#include "packing/hexagonal.h"
+#include "packing/verify.h"
+
+// How time and memory grow: with triangles (a wavy ball of 10 mm, up to ten million of them) and with spheres
+// (in such a ball of 20,000 triangles, up to five million), both packings; and what the index of triangles
+// takes. Every row is a process of its own, so that its peak of memory is its own, and every sphere is
+// verified. Usage: bench_scaling [TRIANGLES [SPHERES]], the most of each, in millions.
+
+namespace aerate::bench {
+namespace {
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+constexpr DeviceRequest kCpu{DeviceRequest::Kind::cpu, 0};
+
+// A ball proper would be a case of its own: all its triangles are nearest to its centre.
+double wavy_radius(double theta, double phi) {
+  return 10 * (1 + 0.15 * std::sin(3 * theta) * std::cos(2 * phi + 1));
+}
+
+// About so many triangles: 2 segments (rings - 1), with twice as many segments as rings.
+Mesh make_wavy_ball(double triangles) {
+  const auto rings = static_cast<std::uint32_t>(std::lround(std::sqrt(triangles / 4))) + 1;
+  const std::uint32_t segments = 2 * rings;
+  Mesh mesh;
+  mesh.positions.push_back({0, 0, 10});
+  for (std::uint32_t r = 1; r < rings; ++r) {
+    for (std::uint32_t s = 0; s < segments; ++s) {
+      const double theta = std::numbers::pi * r / rings;
+      const double phi = 2 * std::numbers::pi * s / segments;
+      const double radius = wavy_radius(theta, phi);
+      mesh.positions.push_back(
+          to_float({radius * std::sin(theta) * std::cos(phi), radius * std::sin(theta) * std::sin(phi),
+                    radius * std::cos(theta)}));
+    }
+  }
+  mesh.positions.push_back({0, 0, -10});
+  const auto at = [&](std::uint32_t r, std::uint32_t s) { return 1 + (r - 1) * segments + s % segments; };
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  for (std::uint32_t s = 0; s < segments; ++s) {
+    mesh.triangles.push_back({0, at(1, s), at(1, s + 1)});
+    mesh.triangles.push_back({last, at(rings - 1, s + 1), at(rings - 1, s)});
+    for (std::uint32_t r = 1; r + 1 < rings; ++r) {
+      mesh.triangles.push_back({at(r, s), at(r + 1, s), at(r + 1, s + 1)});
+      mesh.triangles.push_back({at(r, s), at(r + 1, s + 1), at(r, s + 1)});
+    }
+  }
+  return mesh;
+}
+
+struct Row {
+  double triangles, spheres, density, seconds, processor_seconds;
+  double index_bytes, index_references, index_cells;
+  double corrected;   // spheres that verification dropped or made smaller
+  double peak_bytes;  // of the process, the model included
+};
+
+using Pack = std::function<Packing(const Mesh&, Monitor&)>;
+
+Row measure(const Mesh& mesh, const Pack& pack) {
+  Monitor monitor;
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t processor_start = std::clock();
+  const Packing packing = pack(mesh, monitor);
+  Row row{};
+  row.processor_seconds = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+  row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  row.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  row.triangles = static_cast<double>(mesh.triangles.size());
+  row.spheres = static_cast<double>(packing.spheres.size());
+  row.density = 100 * total_volume(packing) / std::abs(signed_volume(mesh));
+  row.index_bytes = static_cast<double>(packing.statistics.index_bytes);
+  row.index_references = static_cast<double>(packing.statistics.index_references);
+  row.index_cells = static_cast<double>(packing.statistics.index_cells);
+  const Packing verified = verify_packing(mesh, packing);
+  row.corrected = static_cast<double>(verified.statistics.dropped_by_verification +
+                                      verified.statistics.shrunk_by_verification);
+  return row;
+}
+
+// `measure` in a process of its own. Nothing may have started threads in this one.
+Row measure_apart(double triangles, const Pack& pack) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) throw std::runtime_error("bench_scaling: no pipe");
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("bench_scaling: no process");
+  if (child == 0) {
+    const Row row = measure(make_wavy_ball(triangles), pack);
+    const bool written = write(ends[1], &row, sizeof row) == sizeof row;
+    _exit(written ? 0 : 1);
+  }
+  close(ends[1]);
+  Row row{};
+  const bool complete = read(ends[0], &row, sizeof row) == sizeof row;
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (!complete || status != 0) throw std::runtime_error("bench_scaling: a measurement failed");
+  return row;
+}
+
+struct Case {
+  double triangles;
+  Pack pack;
+};
+
+// By how much y grows with x: the exponent of a power of x, by least squares.
+double exponent(const std::vector<Row>& rows, double Row::*x, double Row::*y) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const Row& row : rows) {
+    const double u = std::log(row.*x), v = std::log(row.*y);
+    n += 1, sx += u, sy += v, sxx += u * u, sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+void print_series(const std::string& title, const std::vector<Case>& cases, double Row::*size,
+                  const char* per) {
+  fmt::print(
+      "\n{}\n\n| triangles | spheres | density % | seconds | processor s | us / {} | peak MB | bytes / {} | "
+      "index MB | corrected |\n|---|---|---|---|---|---|---|---|---|---|\n",
+      title, per, per);
+  std::vector<Row> rows;
+  for (const Case& c : cases) {
+    const Row row = rows.emplace_back(measure_apart(c.triangles, c.pack));
+    fmt::print("| {} | {} | {:.2f} | {:.3f} | {:.3f} | {:.2f} | {:.0f} | {:.0f} | {:.1f} | {} |\n",
+               row.triangles, row.spheres, row.density, row.seconds, row.processor_seconds,
+               1e6 * row.processor_seconds / row.*size, row.peak_bytes / 1e6, row.peak_bytes / row.*size,
+               row.index_bytes / 1e6, row.corrected);
+    std::fflush(stdout);
+  }
+  fmt::print("\nprocessor time grows with {}s ^ {:.2f}, the process's memory ^ {:.2f}\n", per,
+             exponent(rows, size, &Row::processor_seconds), exponent(rows, size, &Row::peak_bytes));
+  double most = 0;
+  for (const Row& row : rows) {
+    if (row.index_references > 0) {
+      most = std::max(most, (row.index_bytes - 8 * row.index_cells) / row.index_references);
+    }
+  }
+  if (most > 0) fmt::print("index: 8 bytes a cell, and at most {:.2f} a reference\n", most);
+}
+
+Pack hexagonal(double radius) {
+  return [radius](const Mesh& mesh, Monitor& monitor) {
+    return pack_hexagonal(mesh, {0, 0, 0, radius}, monitor, kCpu);
+  };
+}
+
+Pack adaptive(double least, double largest) {
+  return [least, largest](const Mesh& mesh, Monitor& monitor) {
+    return pack_adaptive(mesh, {0, 0, least, largest}, {}, monitor, kCpu);
+  };
+}
+
+std::vector<Case> with_triangles(double most, const Pack& pack) {
+  std::vector<Case> cases;
+  for (const double share : {0.03, 0.1, 0.3, 1.0}) cases.push_back({share * most, pack});
+  return cases;
+}
+
+// Spheres grow with the inverse cube of their radii.
+template <typename PackOf>
+std::vector<Case> with_spheres(double most, double spheres_at_scale_1, PackOf pack_of) {
+  constexpr double kTriangles = 20000;
+  std::vector<Case> cases;
+  for (const double share : {0.03, 0.1, 0.3, 1.0}) {
+    cases.push_back({kTriangles, pack_of(std::cbrt(spheres_at_scale_1 / (share * most)))});
+  }
+  return cases;
+}
+
+void run(double triangles, double spheres) {
+  print_series("Hexagonal, R = 1 mm: more triangles", with_triangles(triangles, hexagonal(1)),
+               &Row::triangles, "triangle");
+  print_series("Adaptive, r >= 0.4 mm: more triangles", with_triangles(triangles, adaptive(0.4, kUnlimited)),
+               &Row::triangles, "triangle");
+  // So many spheres there are, about, at scale 1.
+  print_series("Hexagonal, 20,000 triangles: more spheres",
+               with_spheres(spheres, 5e6, [](double scale) { return hexagonal(0.0925 * scale); }),
+               &Row::spheres, "sphere");
+  print_series(
+      "Adaptive, 20,000 triangles, radii of 1 : 4.4: more spheres, to a tenth of that",
+      with_spheres(spheres / 10, 0.5e6, [](double scale) { return adaptive(0.045 * scale, 0.2 * scale); }),
+      &Row::spheres, "sphere");
+}
+
+}  // namespace
+}  // namespace aerate::bench
+
+int main(int argc, char** argv) {
+  const double triangles = argc > 1 ? std::atof(argv[1]) : 10;
+  const double spheres = argc > 2 ? std::atof(argv[2]) : 5;
+  if (!(triangles > 0) || !(spheres > 0)) {
+    fmt::print(stderr, "usage: bench_scaling [TRIANGLES [SPHERES]], in millions\n");
+    return 2;
+  }
+  aerate::bench::run(1e6 * triangles, 1e6 * spheres);
+  return 0;
+}
