@@ -8,6 +8,7 @@ find_package(CGAL 5.5 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt REQUIRED)
+find_package(pugixml REQUIRED)
 
 # Not through pkg-config: Debian's lib3MF.pc also asks for libzip's and zlib's linker names, which lib3mf-dev
 # does not bring along and a shared library does not need.

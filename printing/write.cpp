@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <exception>
 #include <fcntl.h>
@@ -21,6 +20,8 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "printing/decimal.h"
+#include "printing/three_mf.h"
 
 namespace aerate {
 namespace {
@@ -157,31 +158,6 @@ void write_stl(const Mesh& mesh, OutputFile& file) {
   });
 }
 
-void append_index(std::string& out, std::uint64_t index) {
-  std::array<char, 20> digits{};
-  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), index).ptr);
-}
-
-// Nine significant digits give fp32 back to a reader that rounds once. Readers that add up the parts of a
-// number in fp32, as assimp's, need a decimal that is nearer to it than that, and no exponent.
-void append_coordinate(std::string& out, float coordinate) {
-  constexpr int kSignificantDigits = 11;
-  constexpr double kLog10Of2 = 0.301029995663981;
-  if (coordinate == 0) {
-    out += '0';
-    return;
-  }
-  const int exponent = static_cast<int>(std::floor(std::ilogb(coordinate) * kLog10Of2));
-  const int decimals = std::max(1, kSignificantDigits - 1 - exponent);
-  std::array<char, 80> digits{};  // 39 before the point, or 57 after it, at most
-  char* end = std::to_chars(digits.data(), digits.data() + digits.size(), static_cast<double>(coordinate),
-                            std::chars_format::fixed, decimals)
-                  .ptr;
-  while (end[-1] == '0') --end;
-  if (end[-1] == '.') --end;
-  out.append(digits.data(), end);
-}
-
 void write_obj(const Mesh& mesh, OutputFile& file) {
   file.write("# millimetres, written by aerate\n");
   write_records(file, mesh.positions.size(), 40, [&](std::size_t i, std::string& out) {
@@ -234,6 +210,9 @@ void write_mesh(const Mesh& mesh, const fs::path& path, const fs::path& shown, M
     case MeshFormat::ply:
       write_ply(mesh, file);
       break;
+    case MeshFormat::three_mf:
+      file.write(to_3mf(mesh));
+      break;
   }
   file.close();
 }
@@ -260,8 +239,9 @@ MeshFormat mesh_format_of(const fs::path& path) {
   if (ending == ".stl") return MeshFormat::stl;
   if (ending == ".obj") return MeshFormat::obj;
   if (ending == ".ply") return MeshFormat::ply;
+  if (ending == ".3mf") return MeshFormat::three_mf;
   throw UsageError(path.string() + ": cannot write " + (ending.empty() ? "a file without an ending" : ending),
-                   "use a name that ends in .stl, .obj or .ply");
+                   "use a name that ends in .stl, .3mf, .obj or .ply");
 }
 
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
@@ -319,6 +299,12 @@ void write_mesh(const Mesh& mesh, const fs::path& path, MeshFormat format) {
 
 void write_mesh(const Mesh& mesh, const PendingFile& file, MeshFormat format) {
   write_mesh(mesh, file.path(), file.target(), format);
+}
+
+void write_bytes(std::string_view bytes, const PendingFile& file) {
+  OutputFile output(file.path(), file.target(), O_WRONLY | O_CREAT | O_TRUNC);
+  output.write(bytes);
+  output.close();
 }
 
 }  // namespace aerate

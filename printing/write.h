@@ -1,12 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "core/mesh.h"
 
 namespace aerate {
 
-enum class MeshFormat { stl, obj, ply };
+enum class MeshFormat { stl, obj, ply, three_mf };
 
 // From the file name's ending (any case). Throws UsageError for one that cannot be written.
 MeshFormat mesh_format_of(const std::filesystem::path& path);
@@ -33,9 +34,12 @@ class PendingFile {
 
 // Writes binary STL (true unit facet normals; (0, 0, 1) for a triangle without area, since some slicers
 // refuse zero normals), OBJ (decimals that read back to the same fp32, also where a reader rounds more than
-// once) or binary little-endian PLY. The bytes depend on the mesh alone. Throws FailureError with the
-// system's reason (disk full, ...); for a pending file its message names the target.
+// once), binary little-endian PLY or 3MF (see three_mf.h). The bytes depend on the mesh alone. Throws
+// FailureError with the system's reason (disk full, ...); for a pending file its message names the target.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, MeshFormat format);
 void write_mesh(const Mesh& mesh, const PendingFile& file, MeshFormat format);
+
+// Fills a pending file with bytes that were made elsewhere. Throws as `write_mesh` does.
+void write_bytes(std::string_view bytes, const PendingFile& file);
 
 }  // namespace aerate

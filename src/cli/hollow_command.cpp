@@ -23,9 +23,27 @@ struct HollowCommand::Options {
         packing(command, config),
         print(command),
         run(command) {
-    command.add_option("-o,--output", output, "The result: .stl, .obj or .ply (required)")
+    command.add_option("-o,--output", output, "The result: .stl, .3mf, .obj or .ply (required)")
         ->required()
         ->type_name("FILE");
+    command
+        .add_option("--as", void_form,
+                    "What voids become: voids (inward shells) or, in a 3MF, modifiers (the solid model with "
+                    "volumes of lower infill, round which no walls are printed)")
+        ->check(CLI::IsMember({"voids", "modifiers"}))
+        ->type_name("FORM")
+        ->capture_default_str();
+    command
+        .add_option("--flavor", flavor,
+                    "Whose modifiers: prusa (PrusaSlicer, SuperSlicer) or orca (OrcaSlicer, Bambu Studio; "
+                    "untested)")
+        ->check(CLI::IsMember({"prusa", "orca"}))
+        ->type_name("FLAVOR")
+        ->capture_default_str();
+    command.add_option("--modifier-infill", modifier_infill, "Infill inside modifiers")
+        ->check(number_between(0.0, 100, "%"))
+        ->type_name("PERCENT")
+        ->capture_default_str();
     command
         .add_option(
             "--spheres", spheres,
@@ -85,6 +103,8 @@ struct HollowCommand::Options {
         std::map<std::string, SurfaceMode>{
             {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}
             .at(surface);
+    if (void_form == "modifiers")
+      options.modifiers = {flavor == "orca" ? ThreeMfFlavor::orca : ThreeMfFlavor::prusa, modifier_infill};
     options.tolerance = tolerance;
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
@@ -107,6 +127,9 @@ struct HollowCommand::Options {
   PrintOptions print;
   RunOptions run;
   std::string output;
+  std::string void_form = "voids";
+  std::string flavor = "prusa";
+  double modifier_infill = ModifierOptions{}.infill_percent;
   std::string spheres;
   double tolerance = HollowOptions{}.tolerance;
   std::optional<double> max_triangles;

@@ -114,7 +114,9 @@ std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+// What voids would remove they do not as modifiers: null there, and what is known under "modifiers".
 Json material_of(const HollowReport& report) {
+  if (report.modifiers) return nullptr;
   const MaterialUse use = material_use(report);
   return {{"name", report.material.name},
           {"density_g_cm3", report.material.density_g_cm3},
@@ -171,6 +173,33 @@ Json json_of(const Balance& balance, const OutputFacts& output) {
           {"tips_over", balance.tips_over()}};
 }
 
+Json volume_of(const HollowReport& report) {
+  const OutputFacts& output = report.output;
+  if (report.modifiers) {
+    return {{"before_mm3", output.volume_before},
+            {"after_mm3", nullptr},
+            {"removed_mm3", nullptr},
+            {"removed_percent", nullptr},
+            {"estimated", report.volume_estimated}};
+  }
+  return {{"before_mm3", output.volume_before},
+          {"after_mm3", output.volume_after},
+          {"removed_mm3", output.volume_removed},
+          {"removed_percent", 100 * output.volume_removed / output.volume_before},
+          {"estimated", report.volume_estimated}};
+}
+
+Json modifiers_of(const HollowReport& report) {
+  if (!report.modifiers) return nullptr;
+  const OutputFacts& output = report.output;
+  const MaterialUse use = material_use(report);
+  return {{"flavor", name_of(report.modifiers->flavor)},
+          {"infill_percent", report.modifiers->infill_percent},
+          {"volume_mm3", output.volume_removed},
+          {"volume_percent", 100 * output.volume_removed / output.volume_before},
+          {"most_saved_g_per_infill_percent", (use.mass_before_g - use.mass_after_g) / 100}};
+}
+
 }  // namespace
 
 std::string to_json(const HollowReport& report) {
@@ -197,14 +226,12 @@ std::string to_json(const HollowReport& report) {
                    {"tolerance_used_mm", report.tolerance_used},
                    {"deviation_mm", output.void_deviation}};
   json["measured"] = json_of(output.clearances);
-  json["volume"] = {{"before_mm3", output.volume_before},
-                    {"after_mm3", output.volume_after},
-                    {"removed_mm3", output.volume_removed},
-                    {"removed_percent", 100 * output.volume_removed / output.volume_before},
-                    {"estimated", report.volume_estimated}};
-  json["centre_of_mass"] = {{"before_mm", json_of(output.centre_of_mass_before)},
-                            {"after_mm", json_of(output.centre_of_mass_after)}};
-  json["strength_and_balance"] = json_of(report.balance, output);
+  json["volume"] = volume_of(report);
+  json["modifiers"] = modifiers_of(report);
+  json["centre_of_mass"] = {
+      {"before_mm", json_of(output.centre_of_mass_before)},
+      {"after_mm", report.modifiers ? Json(nullptr) : json_of(output.centre_of_mass_after)}};
+  json["strength_and_balance"] = report.modifiers ? Json(nullptr) : json_of(report.balance, output);
   json["print"] = report.print ? json_of(*report.print) : Json(nullptr);
   json["material"] = material_of(report);
   add_closing(json, report.stages, report.notices);

@@ -157,6 +157,42 @@ void add_print(Lines& lines, const HollowReport& report) {
   }
 }
 
+void add_volume(Lines& lines, const HollowReport& report) {
+  const OutputFacts& output = report.output;
+  const double percent = 100 * output.volume_removed / output.volume_before;
+  const char* estimated =
+      report.volume_estimated ? "; the model's volume is an estimate, since parts overlap" : "";
+  if (report.modifiers) {
+    lines.add("modifiers", "{:.1f} of {:.1f} mm3 ({:.2f} %) with {:g} % infill instead of the print's own{}",
+              output.volume_removed, output.volume_before, percent, report.modifiers->infill_percent,
+              estimated);
+    lines.add("", "for {}; nothing is removed, and no walls are printed round them",
+              report.modifiers->flavor == ThreeMfFlavor::prusa ? "PrusaSlicer and SuperSlicer"
+                                                               : "OrcaSlicer and Bambu Studio (untested)");
+    return;
+  }
+  lines.add("removed", "{:.1f} of {:.1f} mm3 ({:.2f} %), {:.1f} mm3 left{}", output.volume_removed,
+            output.volume_before, percent, output.volume_after, estimated);
+}
+
+void add_material(Lines& lines, const HollowReport& report) {
+  const MaterialUse use = material_use(report);
+  const std::string figures =
+      fmt::format("{:g} g/cm3 and {:g} a kg", report.material.density_g_cm3, report.material.price_per_kg);
+  if (report.modifiers) {
+    // Infill that the slicer makes solid for other reasons (under a top, over a bottom) stays.
+    lines.add("material",
+              "{}: each point of the print's infill above {:g} % saves up to {:.3f} g, cost {:.4f} (at {})",
+              report.material.name, report.modifiers->infill_percent,
+              (use.mass_before_g - use.mass_after_g) / 100, (use.cost_before - use.cost_after) / 100,
+              figures);
+    return;
+  }
+  lines.add("material", "{} {:.1f} -> {:.1f} g, cost {:.2f} -> {:.2f} (at {})", report.material.name,
+            use.mass_before_g, use.mass_after_g, use.cost_before, use.cost_after, figures);
+  add_print(lines, report);
+}
+
 }  // namespace
 
 std::string to_text(const HollowReport& report) {
@@ -169,17 +205,11 @@ std::string to_text(const HollowReport& report) {
             radii(output.smallest_radius, output.largest_radius), name_of(report.method),
             100 * report.packing_density);
   add_device(lines, report.packing_device);
-  lines.add("removed", "{:.1f} of {:.1f} mm3 ({:.2f} %), {:.1f} mm3 left{}", output.volume_removed,
-            output.volume_before, 100 * output.volume_removed / output.volume_before, output.volume_after,
-            report.volume_estimated ? "; the model's volume is an estimate, since parts overlap" : "");
+  add_volume(lines, report);
   lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", output.clearances.wall,
             report.limits.wall, gap_in_words(output.clearances), report.limits.gap);
-  add_balance(lines, report);
-  const MaterialUse use = material_use(report);
-  lines.add("material", "{} {:.1f} -> {:.1f} g, cost {:.2f} -> {:.2f} (at {:g} g/cm3 and {:g} a kg)",
-            report.material.name, use.mass_before_g, use.mass_after_g, use.cost_before, use.cost_after,
-            report.material.density_g_cm3, report.material.price_per_kg);
-  add_print(lines, report);
+  if (!report.modifiers) add_balance(lines, report);
+  add_material(lines, report);
   lines.add("output", "{}: {} ({} outside, {}), {}", output.path.filename().string(),
             count_of(output.triangle_count, "triangle", "triangles"), grouped(output.outer_triangle_count),
             report.surface == OuterSurface::kept ? "kept as they were" : "remeshed",

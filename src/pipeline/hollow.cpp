@@ -14,12 +14,11 @@
 #include "pipeline/pack.h"
 #include "pipeline/prepare.h"
 #include "pipeline/print_prediction.h"
-#include "pipeline/read_back.h"
+#include "pipeline/solid_file.h"
 #include "printing/carve.h"
 #include "printing/footing.h"
 #include "printing/remesh.h"
 #include "printing/strength.h"
-#include "printing/write.h"
 
 namespace aerate {
 namespace {
@@ -50,7 +49,7 @@ void warn_of_tipping(const HollowReport& report, Monitor& monitor) {
 }  // namespace
 
 HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
-  const MeshFormat format = mesh_format_of(options.output);
+  const SolidFormat format = solid_format_of(options);
   require_other_file(options.model, options.output);
 
   JobLog log(monitor);
@@ -59,8 +58,12 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   report.tolerance_asked = options.tolerance;
   report.max_triangles = options.max_triangles;
   report.material = options.material;
+  report.modifiers = options.modifiers;
 
-  const PackingRequest request = without_voids_that_cost(options.packing, options, log);
+  // Modifiers have no walls to pay for, and leave the model solid.
+  const bool makes_voids = !options.modifiers;
+  const PackingRequest request =
+      makes_voids ? without_voids_that_cost(options.packing, options, log) : options.packing;
   report.limits = request.limits;
   report.process = request.process;
   warn_of_trapped_material(options.packing.process.process, log);
@@ -93,17 +96,17 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   const Solid solid = carve(model, plan, {.tolerance = report.tolerance_used}, log);
   log.check_interrupted();
 
-  if (prints_filament(options)) {
+  if (makes_voids && prints_filament(options)) {
     log.stage("predict");
     report.print = predict_print(model.mesh, solid, plan, options, log);
   }
 
   log.stage("write");
-  write_mesh(solid.mesh, pending.file(), format);
+  write_solid(solid, pending.file(), format);
   log.check_interrupted();
 
   log.stage("check");
-  const Mesh written = read_back(pending.file().path(), format, log);
+  const Mesh written = read_back_solid(solid, pending.file().path(), format, log);
   report.output = check_output(written,
                                {.solid = solid,
                                 .model = model.mesh,
@@ -115,7 +118,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
                                log);
   report.output.path = options.output;
   report.output.file_bytes = std::filesystem::file_size(pending.file().path());
-  report.balance = balance_of(model.mesh, report.output);
+  if (makes_voids) report.balance = balance_of(model.mesh, report.output);
   if (report.balance.tips_over()) warn_of_tipping(report, log);
   log.check_interrupted();
   pending.file().commit();

@@ -11,6 +11,7 @@
 #include "packing/adaptive.h"
 #include "pipeline/process_choice.h"
 #include "printing/print_settings.h"
+#include "printing/three_mf.h"
 
 namespace aerate {
 
@@ -57,12 +58,20 @@ struct PackOptions {
 // What to do when voids make a print heavier than it would be without them.
 enum class HeavierPrint { refuse, allow };
 
+// Voids as parts of a 3MF where the slicer changes the infill and prints no walls, instead of as shells.
+struct ModifierOptions {
+  ThreeMfFlavor flavor = ThreeMfFlavor::prusa;
+  double infill_percent = 0;
+};
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
   LoadOptions load;
   PackingRequest packing;
   SurfaceMode surface = SurfaceMode::automatic;
+  // If given, voids become modifiers; the output has to be 3MF.
+  std::optional<ModifierOptions> modifiers;
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.
   double tolerance = 0.05;

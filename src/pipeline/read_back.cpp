@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "mesh/load.h"
 #include "mesh/weld.h"
 
 namespace aerate {
@@ -172,6 +173,9 @@ Mesh read_back(const std::filesystem::path& path, MeshFormat format, Monitor& mo
       return read_written_ply(path, monitor);
     case MeshFormat::obj:
       return read_written_obj(path, monitor);
+    case MeshFormat::three_mf:
+      monitor.check_interrupted();
+      return load_model(path).mesh;
   }
   fail(path, "no reader for this format");
 }

@@ -90,6 +90,10 @@ struct HollowReport {
   double tolerance_used = 0;
   std::optional<std::size_t> max_triangles;
 
+  // Voids were written as modifiers. The solid model stays: what `output` says of volumes and of the centre
+  // of mass is then that of the model less the modifiers, not of a print.
+  std::optional<ModifierOptions> modifiers;
+
   OutputFacts output;
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;

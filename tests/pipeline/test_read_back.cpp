@@ -19,7 +19,7 @@ using test::message_of;
 TEST(ReadBack, EveryFormatGivesTheSameBitsAgain) {
   const Mesh mesh = test::make_uv_sphere(1.0 / 3.0, 9, 11);  // coordinates that are no short decimals
   const test::TemporaryFolder folder;
-  for (const char* name : {"a.stl", "a.obj", "a.ply"}) {
+  for (const char* name : {"a.stl", "a.obj", "a.ply", "a.3mf"}) {
     const auto path = folder.path() / name;
     const MeshFormat format = mesh_format_of(path);
     write_mesh(mesh, path, format);

@@ -1,0 +1,45 @@
+#include "pipeline/solid_file.h"
+
+#include <fmt/format.h>
+#include <utility>
+
+#include "core/error.h"
+#include "pipeline/read_back.h"
+#include "printing/three_mf.h"
+
+namespace aerate {
+
+SolidFormat solid_format_of(const HollowOptions& options) {
+  const SolidFormat format{mesh_format_of(options.output), options.modifiers};
+  if (format.modifiers && format.mesh != MeshFormat::three_mf) {
+    throw UsageError(options.output.string() + ": modifiers need a 3MF file",
+                     "give a name that ends in .3mf, or leave out --as modifiers");
+  }
+  return format;
+}
+
+void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat& format) {
+  if (!format.modifiers) {
+    write_mesh(solid.mesh, file, format.mesh);
+    return;
+  }
+  write_bytes(to_3mf(with_void_shells_turned(solid.mesh, solid),
+                     modifier_parts(solid, format.modifiers->infill_percent), format.modifiers->flavor),
+              file);
+}
+
+Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
+                     Monitor& monitor) {
+  Mesh mesh = read_back(path, format.mesh, monitor);
+  if (!format.modifiers) return mesh;
+  if (mesh.triangles.size() != solid.mesh.triangles.size() ||
+      read_3mf_parts(path, format.modifiers->flavor) !=
+          modifier_parts(solid, format.modifiers->infill_percent)) {
+    throw FailureError(
+        "the result failed its check, so it was not kept: its parts are not the model and its voids",
+        "please report this with the model and the options");
+  }
+  return with_void_shells_turned(std::move(mesh), solid);
+}
+
+}  // namespace aerate

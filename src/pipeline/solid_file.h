@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "core/mesh.h"
+#include "core/monitor.h"
+#include "core/solid.h"
+#include "pipeline/options.h"
+#include "printing/write.h"
+
+namespace aerate {
+
+// How a solid is put into a file: its voids as inward shells or, in a 3MF, as modifiers.
+struct SolidFormat {
+  MeshFormat mesh = MeshFormat::stl;
+  std::optional<ModifierOptions> modifiers;
+};
+
+// Throws UsageError for an ending that cannot be written, and for modifiers in anything but a 3MF.
+SolidFormat solid_format_of(const HollowOptions& options);
+
+// Throws FailureError with the system's reason.
+void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat& format);
+
+// The mesh that `write_solid` wrote, read from its file (see read_back.h), with voids as inward shells again.
+// Throws what read_back() throws, and FailureError if the parts of the file are not those of the solid.
+Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
+                     Monitor& monitor);
+
+}  // namespace aerate
