@@ -13,10 +13,12 @@
 
 #include "cli/config_file.h"
 #include "cli/hollow_command.h"
+#include "cli/hook_command.h"
 #include "cli/inspect_command.h"
 #include "cli/interrupt.h"
 #include "cli/pack_command.h"
 #include "cli/process_options.h"
+#include "cli/slice_command.h"
 #include "packing/device.h"
 #include "pipeline/process_choice.h"
 
@@ -91,6 +93,8 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   HollowCommand hollow(app, config);
   PackCommand pack(app, config);
   InspectCommand inspect(app);
+  SliceCommand slice(app, config);
+  HookCommand hook(app, config);
 
   try {
     app.parse(argc, argv);
@@ -110,6 +114,8 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   if (hollow.chosen()) hollow.run(interrupt);
   if (pack.chosen()) pack.run(interrupt);
   if (inspect.chosen()) inspect.run(interrupt);
+  if (slice.chosen()) slice.run(interrupt);
+  if (hook.chosen()) hook.run(interrupt);
   require_stdout_written();
   return ExitCode::done;
 }

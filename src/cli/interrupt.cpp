@@ -2,10 +2,12 @@
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <climits>
 #include <csignal>
 #include <cstring>
 #include <string_view>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/error.h"
@@ -25,6 +27,17 @@ std::array<GuardedFile, InterruptGuard::kMostFiles> g_files;  // NOLINT: see abo
 std::atomic<int> g_signals{0};                                // NOLINT: see above
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
+// A folder takes a program: a signal handler may fork, but not walk through a folder.
+void remove_abruptly(const char* path) {
+  if (unlink(path) == 0 || (errno != EISDIR && errno != EPERM)) return;
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/rm", "rm", "-rf", "--", path, static_cast<char*>(nullptr));
+    _exit(1);
+  }
+  if (child > 0) waitpid(child, nullptr, 0);
+}
+
 extern "C" void on_interrupt(int /*signal*/) {
   if (g_signals.fetch_add(1) == 0) {
     if (isatty(STDERR_FILENO) != 0) {
@@ -34,7 +47,7 @@ extern "C" void on_interrupt(int /*signal*/) {
     return;
   }
   for (GuardedFile& file : g_files) {
-    if (file.in_use.load()) unlink(file.path.data());
+    if (file.in_use.load()) remove_abruptly(file.path.data());
   }
   _exit(static_cast<int>(ExitCode::interrupted));
 }

@@ -15,7 +15,8 @@ class InterruptGuard {
 
   bool interrupted() const;
 
-  // A file to remove when the process is ended at once, and: no longer. At most kMostFiles, others are left.
+  // A file or folder to remove when the process is ended at once, and: no longer. At most kMostFiles, others
+  // are left.
   void guard(const std::filesystem::path& path);
   void release(const std::filesystem::path& path);
 

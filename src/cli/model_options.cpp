@@ -22,6 +22,15 @@ const std::map<std::string, LengthUnit>& units() {
 
 ModelOptions::ModelOptions(CLI::App& command) {
   command.add_option("MODEL", path, "The model: STL, OBJ, PLY, OFF or 3MF")->required()->type_name("");
+  add_size_options(command);
+}
+
+ModelOptions::ModelOptions(CLI::App& command, const std::string& name, const std::string& description) {
+  command.add_option(name, path, description)->type_name("FILE");
+  add_size_options(command);
+}
+
+void ModelOptions::add_size_options(CLI::App& command) {
   command
       .add_option("--unit", unit_,
                   "Unit of the model's coordinates: mm, cm, m or inch; 3MF files name their own (default mm)")

@@ -18,11 +18,15 @@ namespace aerate::cli {
 // MODEL, --unit, --scale
 struct ModelOptions {
   explicit ModelOptions(CLI::App& command);
+  // The model as an option of this name that may be left out.
+  ModelOptions(CLI::App& command, const std::string& name, const std::string& description);
   LoadOptions load() const;
 
   std::filesystem::path path;
 
  private:
+  void add_size_options(CLI::App& command);
+
   std::string unit_;
   double scale_ = 1.0;
 };

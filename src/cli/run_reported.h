@@ -8,6 +8,7 @@
 #include "cli/report_json.h"
 #include "cli/report_output.h"
 #include "cli/report_text.h"
+#include "cli/slice_report.h"
 #include "cli/terminal.h"
 #include "pipeline/thread_limit.h"
 

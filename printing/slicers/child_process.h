@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/monitor.h"
+
+namespace aerate {
+
+// A folder that only this user can enter, in the system's place for temporary files; removed with everything
+// in it at the end of its life. Throws FailureError if it cannot be made.
+class PrivateFolder {
+ public:
+  explicit PrivateFolder(Monitor& monitor);
+  ~PrivateFolder();
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  Monitor& monitor_;
+  std::filesystem::path path_;
+};
+
+struct ChildCommand {
+  std::vector<std::string> arguments;  // the program first, looked for on the path; no shell is involved
+  std::vector<std::pair<std::string, std::string>> environment;  // added to this process's own
+  std::filesystem::path folder;                                  // for what it prints; working folder stays
+};
+
+struct ChildOutcome {
+  int exit_code = 0;    // 128 + signal for a process that a signal ended
+  std::string printed;  // standard output and error, as they came
+};
+
+// Runs a program to its end. It reads one line "y" and then an end of file, should it ask a question. It
+// leads a process group, which is killed when the monitor interrupts. Throws FailureError if it cannot be
+// started.
+ChildOutcome run_child(const ChildCommand& command, Monitor& monitor);
+
+}  // namespace aerate

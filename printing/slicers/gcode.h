@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aerate {
+
+// What a slicer says about its own G-code; absent where it says nothing. Several extruders are added up.
+struct GcodeFigures {
+  std::optional<double> filament_mm;
+  std::optional<double> filament_cm3;
+  std::optional<double> filament_g;
+  std::optional<double> cost;
+  std::optional<double> seconds;
+  std::size_t layers = 0;  // those with extrusion, where the slicer does not mark layers
+};
+
+enum class GcodeGenerator { prusa_slicer, super_slicer, orca_slicer, bambu_studio, slic3r, cura, unknown };
+
+// Whose G-code this is, by the first lines, and its name with the version as it stands there.
+struct GcodeOrigin {
+  GcodeGenerator generator = GcodeGenerator::unknown;
+  std::string name;
+};
+
+// Prusa's binary container for G-code, which scripts cannot edit.
+bool is_binary_gcode(std::string_view gcode);
+
+GcodeOrigin origin_of(std::string_view gcode);
+
+// Reads the comments that PrusaSlicer and its relatives, Slic3r and Cura write.
+GcodeFigures figures_of(std::string_view gcode);
+
+// The value of a setting in the block of settings at the end ("; key = value"), as it stands there.
+std::optional<std::string> setting_in(std::string_view gcode, std::string_view key);
+
+// The same G-code with the whole line of a setting replaced by the one of `original`, if both have it.
+std::string with_setting_of(std::string gcode, std::string_view original, std::string_view key);
+
+// Where the nozzle is after a move that extrudes, mm, and how much filament went through it.
+struct ExtrusionMove {
+  double x = 0, y = 0, z = 0, filament = 0;
+};
+
+// Moves of G0 to G3 that feed filament while moving; absolute and relative coordinates, G92. O(bytes).
+std::vector<ExtrusionMove> extrusion_moves(std::string_view gcode);
+
+// How two lists of moves differ by more than rounding (0.01 mm), in words; nothing if they do not.
+std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
+                                         const std::vector<ExtrusionMove>& b);
+
+// Puts comment lines (";" included) where no reader of G-code minds: after the first line, or after the
+// header block of OrcaSlicer. Never inside a block of settings.
+std::string with_comments(std::string_view gcode, std::string_view comments);
+
+}  // namespace aerate

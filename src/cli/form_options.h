@@ -1,0 +1,29 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "cli/model_options.h"
+#include "pipeline/options.h"
+#include "pipeline/print_forms.h"
+
+namespace aerate::cli {
+
+// Options of the commands that hollow a model only to slice it: those of packing, --tolerance, --as,
+// --modifier-infill, --slicer-path.
+struct FormOptions {
+  FormOptions(CLI::App& command, const ConfigFile& config);
+  // Throws UsageError for options that contradict each other. The output is left open.
+  HollowOptions hollow(const ModelOptions& model) const;
+  FormChoice choice() const;
+
+  double modifier_infill_percent = 0;
+  std::string slicer_path;
+
+ private:
+  PackingCommandOptions packing_;
+  double tolerance_ = HollowOptions{}.tolerance;
+  std::string as_ = "auto";
+};
+
+}  // namespace aerate::cli

@@ -1,0 +1,211 @@
+#include "pipeline/hook.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "pipeline/announced_file.h"
+#include "pipeline/job_log.h"
+#include "printing/slicers/child_process.h"
+#include "printing/slicers/text_file.h"
+
+namespace aerate {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPostProcess = "post_process";
+
+// The block of comments begins and ends with these.
+constexpr std::string_view kBegin = "; aerate = begin\n", kEnd = "; aerate = end\n";
+
+std::string read_gcode(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) throw InputError(path.string() + ": is not a file");
+  std::string text = read_text(path);
+  if (is_binary_gcode(text)) {
+    throw InputError(path.string() + ": is binary G-code, which a script cannot edit",
+                     "switch binary G-code off in the slicer's printer settings");
+  }
+  if (origin_of(text).generator == GcodeGenerator::unknown || extrusion_moves(text).empty()) {
+    throw InputError(path.string() + ": is not G-code of a slicer that is known here",
+                     "PrusaSlicer, SuperSlicer, OrcaSlicer, Slic3r and Cura are");
+  }
+  if (text.find("\n" + std::string(kBegin)) != std::string::npos)
+    throw InputError(path.string() + ": has been through aerate already", "slice again");
+  return text;
+}
+
+// The slicer that can repeat what it did from its own G-code.
+Slicer slicer_of(const GcodeOrigin& origin, const HookOptions& options) {
+  if (origin.generator != GcodeGenerator::prusa_slicer && origin.generator != GcodeGenerator::super_slicer) {
+    throw UsageError(fmt::format("{}: {} cannot be run again from the settings in its G-code",
+                                 options.gcode.string(), origin.name),
+                     "hollow the model before slicing, or leave out --model to annotate only");
+  }
+  return find_slicer(SlicerKind::prusa_slicer, options.slicer_path);
+}
+
+struct Rectangle {
+  double x_min = 0, x_max = 0, y_min = 0, y_max = 0;
+};
+
+Rectangle extent_of(const std::vector<ExtrusionMove>& moves) {
+  const auto [x_min, x_max] =
+      std::minmax_element(moves.begin(), moves.end(), [](auto& a, auto& b) { return a.x < b.x; });
+  const auto [y_min, y_max] =
+      std::minmax_element(moves.begin(), moves.end(), [](auto& a, auto& b) { return a.y < b.y; });
+  return {x_min->x, x_max->x, y_min->y, y_max->y};
+}
+
+// A hollowed model prints within the same outline.
+void require_same_place(const SlicedForm& form, const std::vector<ExtrusionMove>& original) {
+  constexpr double kLineWidth = 1;  // mm, more than that of any: seams and fills may differ
+  const Rectangle a = extent_of(extrusion_moves(read_text(form.gcode))), b = extent_of(original);
+  const double distance = std::max({std::abs(a.x_min - b.x_min), std::abs(a.x_max - b.x_max),
+                                    std::abs(a.y_min - b.y_min), std::abs(a.y_max - b.y_max)});
+  if (distance > kLineWidth)
+    throw FailureError(fmt::format("the slicer put the model with {} elsewhere, {:.1f} mm off",
+                                   name_of(form.form), distance));
+}
+
+void require_match(const std::vector<ExtrusionMove>& original, const SlicedForm& solid,
+                   const HookOptions& options) {
+  const auto difference = difference_of(original, extrusion_moves(read_text(solid.gcode)));
+  if (!difference) return;
+  throw InputError(fmt::format("{}: sliced with the settings of {} it does not give the same G-code ({})",
+                               options.hollow.model.string(), options.gcode.filename().string(), *difference),
+                   "it has to be the only object on the plate, as it stands in the file: not turned, scaled, "
+                   "mirrored, cut or "
+                   "moved; a project saved as 3MF keeps its place");
+}
+
+std::string figure(const char* name, const std::optional<double>& before, const std::optional<double>& after,
+                   int decimals) {
+  if (!after) return {};
+  return fmt::format("; aerate_{} = {:.{}f}{}\n", name, *after, decimals,
+                     before ? fmt::format(" (solid {:.{}f})", *before, decimals) : "");
+}
+
+std::string comments_for(const HookReport& report) {
+  const SlicedForm& chosen = report.forms[report.chosen];
+  const GcodeFigures& now = chosen.figures;
+  const bool changed = report.chosen > 0;
+  const auto before = [&](std::optional<double> GcodeFigures::*what) {
+    return changed ? report.forms.front().figures.*what : std::nullopt;
+  };
+  std::string text(kBegin);
+  text += fmt::format("; aerate_result = {}\n", changed ? name_of(chosen.form) : "unchanged");
+  if (!report.remark.empty()) text += fmt::format("; aerate_remark = {}\n", report.remark);
+  text += figure("filament_mm", before(&GcodeFigures::filament_mm), now.filament_mm, 2);
+  text += figure("filament_cm3", before(&GcodeFigures::filament_cm3), now.filament_cm3, 2);
+  text += figure("filament_g", before(&GcodeFigures::filament_g), now.filament_g, 2);
+  text += figure("cost", before(&GcodeFigures::cost), now.cost, 2);
+  text += figure("seconds", before(&GcodeFigures::seconds), now.seconds, 0);
+  text += fmt::format("; aerate_layers = {}\n", now.layers);
+  if (changed) {
+    const OutputFacts& facts = chosen.hollow->output;
+    text +=
+        fmt::format("; aerate_voids = {}, radius {:.3f} to {:.3f} mm, {:.1f} mm3, wall {:.3f} mm at least\n",
+                    facts.void_count, facts.smallest_radius, facts.largest_radius, facts.volume_removed,
+                    facts.clearances.wall);
+  }
+  return text + std::string(kEnd);
+}
+
+// Solid, then hollowed as far as that is possible.
+void slice_forms(const std::string& original, const HookOptions& options, const fs::path& scratch,
+                 HookReport& report, JobLog& log) {
+  const Slicer slicer = slicer_of(report.origin, options);
+  const std::vector<PrintForm> hollowed = forms_to_try(options.form, slicer.kind);
+  // A slicer tells G-code by its ending, and the file that a script gets may have another.
+  const fs::path settings = scratch / "settings.gcode";
+  std::ofstream(settings, std::ios::binary) << original;
+  const bool is_project = options.hollow.model.extension() == ".3mf";
+  const FormJob job{.slicer = slicer,
+                    .settings = {{settings}},
+                    .hollow = options.hollow,
+                    .modifier_infill_percent = options.modifier_infill_percent,
+                    .keep_place = is_project,
+                    .scratch = scratch};
+  const std::vector<ExtrusionMove> moves = extrusion_moves(original);
+  SlicedForm solid = slice_form(PrintForm::solid, job, log);
+  require_match(moves, solid, options);
+  report.forms.front().slicer_seconds = solid.slicer_seconds;
+  try {
+    for (const PrintForm form : hollowed) {
+      report.forms.push_back(slice_form(form, job, log));
+      require_same_place(report.forms.back(), moves);
+    }
+  } catch (const NothingToRemoveError& error) {
+    // Not a failure of the print: the script may stand in the settings for models of any size.
+    report.remark = error.what();
+    return;
+  }
+  report.chosen = choose_form(report.forms, options.form);
+  if (report.chosen == 0) report.remark = "no hollowed form takes less filament";
+}
+
+std::string new_content(const std::string& original, const HookReport& report) {
+  if (report.chosen == 0) return with_comments(original, comments_for(report));
+  std::string gcode = with_setting_of(read_text(report.forms[report.chosen].gcode), original, kPostProcess);
+  return with_comments(gcode, comments_for(report));
+}
+
+HookReport annotate_or_replace(const HookOptions& options, Monitor& monitor) {
+  if (std::getenv(kSlicedByVariable) != nullptr) {
+    throw UsageError("the hook was called by a slicer that aerate itself runs",
+                     "remove it from the slicer's own default settings");
+  }
+  JobLog log(monitor);
+  HookReport report;
+  report.gcode = options.gcode;
+  const std::string original = read_gcode(options.gcode);
+  report.origin = origin_of(original);
+  report.forms.push_back({.form = PrintForm::solid,
+                          .figures = figures_of(original),
+                          .gcode = options.gcode,
+                          .hollow = std::nullopt});
+  AnnouncedFile pending(options.gcode, log);
+  fs::permissions(pending.file().path(), fs::status(options.gcode).permissions());
+  const PrivateFolder scratch(log);
+  if (options.hollow.model.empty()) {
+    report.remark = "no model was given";
+  } else {
+    slice_forms(original, options, scratch.path(), report, log);
+  }
+  const std::string content = new_content(original, report);
+  log.check_interrupted();
+  pending.commit_text(content);
+  report.stages = log.finish();
+  report.notices = log.notices();
+  return report;
+}
+
+// A slicer shows what a failing script wrote in a dialog: the first line says what failed, the last line of a
+// program's output mostly why.
+std::string on_one_line(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();
+  const std::size_t first_end = text.find('\n');
+  if (first_end == std::string::npos) return text;
+  return text.substr(0, first_end) + " ... " + text.substr(text.rfind('\n') + 1);
+}
+
+}  // namespace
+
+HookReport run_hook(const HookOptions& options, Monitor& monitor) {
+  try {
+    return annotate_or_replace(options, monitor);
+  } catch (const Error& error) {
+    std::string text = on_one_line(error.what());
+    if (!error.hint().empty()) text += "; " + error.hint();
+    throw Error(error.code(), text);
+  }
+}
+
+}  // namespace aerate

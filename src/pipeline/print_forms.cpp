@@ -1,0 +1,111 @@
+#include "pipeline/print_forms.h"
+
+#include <chrono>
+#include <fmt/format.h>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "mesh/load.h"
+#include "pipeline/hollow.h"
+#include "printing/write.h"
+
+namespace aerate {
+namespace {
+
+// The slicer names the object after the file, so that every form keeps the model's name.
+std::filesystem::path folder_of(PrintForm form, const FormJob& job) {
+  const std::filesystem::path folder = job.scratch / name_of(form);
+  std::filesystem::create_directory(folder);
+  return folder;
+}
+
+// STL as every slicer reads it, whatever the model came as.
+void write_solid_model(const FormJob& job, const std::filesystem::path& path, Monitor& monitor) {
+  monitor.stage("load");
+  write_mesh(load_model(job.hollow.model, job.hollow.load).mesh, path, MeshFormat::stl);
+}
+
+}  // namespace
+
+const char* name_of(PrintForm form) {
+  switch (form) {
+    case PrintForm::solid:
+      return "solid";
+    case PrintForm::voids:
+      return "voids";
+    case PrintForm::modifiers:
+      return "modifiers";
+  }
+  return "unknown";
+}
+
+std::vector<PrintForm> forms_to_try(FormChoice choice, SlicerKind slicer) {
+  if (choice == FormChoice::voids) return {PrintForm::voids};
+  if (choice == FormChoice::modifiers) {
+    if (!takes_modifiers(slicer)) {
+      throw UsageError(fmt::format("{} reads no modifiers", name_of(slicer)),
+                       "use --as voids, or --as auto, which leaves them out");
+    }
+    return {PrintForm::modifiers};
+  }
+  if (takes_modifiers(slicer)) return {PrintForm::voids, PrintForm::modifiers};
+  return {PrintForm::voids};
+}
+
+SlicedForm slice_form(PrintForm form, const FormJob& job, Monitor& monitor) {
+  const std::filesystem::path folder = folder_of(form, job);
+  const std::string name = job.hollow.model.stem().string();
+  SlicedForm sliced;
+  sliced.form = form;
+  sliced.gcode = folder / "out.gcode";
+  std::filesystem::path model = folder / (name + (form == PrintForm::modifiers ? ".3mf" : ".stl"));
+  if (form == PrintForm::solid) {
+    write_solid_model(job, model, monitor);
+  } else {
+    HollowOptions options = job.hollow;
+    options.output = model;
+    if (form == PrintForm::modifiers) {
+      const bool is_orca = job.slicer.kind == SlicerKind::orca_slicer;
+      options.modifiers = {is_orca ? ThreeMfFlavor::orca : ThreeMfFlavor::prusa, job.modifier_infill_percent};
+    }
+    sliced.hollow = hollow(options, monitor);
+  }
+  monitor.check_interrupted();
+
+  monitor.stage(fmt::format("slice {}", name_of(form)));
+  const auto begin = std::chrono::steady_clock::now();
+  sliced.figures = slice(job.slicer,
+                         {.model = std::move(model),
+                          .gcode = sliced.gcode,
+                          .settings = job.settings,
+                          .keep_place = job.keep_place,
+                          .scratch = folder},
+                         monitor);
+  sliced.slicer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return sliced;
+}
+
+double filament_saved(const GcodeFigures& solid, const GcodeFigures& other) {
+  for (const auto figure :
+       {&GcodeFigures::filament_mm, &GcodeFigures::filament_cm3, &GcodeFigures::filament_g}) {
+    const std::optional<double> before = solid.*figure, after = other.*figure;
+    if (before && after && *before > 0) return 1 - *after / *before;
+  }
+  throw FailureError("the slicer's G-code does not say how much filament it takes");
+}
+
+std::size_t choose_form(const std::vector<SlicedForm>& forms, FormChoice choice) {
+  if (choice != FormChoice::automatic) return 1;
+  std::size_t best = 0;
+  double most_saved = 0;
+  for (std::size_t i = 1; i < forms.size(); ++i) {
+    const double saved = filament_saved(forms[0].figures, forms[i].figures);
+    if (saved <= most_saved) continue;
+    most_saved = saved;
+    best = i;
+  }
+  return best;
+}
+
+}  // namespace aerate

@@ -1,0 +1,290 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/mesh.h"
+#include "printing/slicers/slicer.h"
+#include "printing/write.h"
+#include "tests/slicer/fake_slicer.h"
+#include "tests/slicer/slicing.h"
+#include "tests/support/caught.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temporary_folder.h"
+
+// `aerate slice` and `aerate hook` with real slicers.
+namespace aerate::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+#define AERATE_NEEDS(program) \
+  if (!is_installed(program)) GTEST_SKIP() << program << " is not installed: nothing was sliced"
+
+class Slicing : public testing::Test {
+ protected:
+  Slicing() { fs::create_directory(outputs()); }
+
+  fs::path outputs() const { return folder_.path() / "outputs"; }
+  fs::path output() const { return outputs() / "out.gcode"; }
+
+  fs::path model(const std::string& name, const Mesh& mesh) const {
+    const auto path = folder_.path() / name;
+    write_mesh(mesh, path, MeshFormat::stl);
+    return path;
+  }
+  fs::path block() const { return model("block.stl", make_box({0, 0, 0}, {22, 20, 18})); }
+  // Unlike its mirror image, and unlike itself when turned.
+  static Mesh tetrahedron() {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {24, 0, 0}, {0, 16, 0}, {0, 0, 9}};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    return mesh;
+  }
+
+  ProcessResult slice(const fs::path& model, const std::string& slicer,
+                      std::vector<std::string> options) const {
+    std::vector<std::string> command{AERATE_EXECUTABLE, "slice",        model, "--slicer",     slicer, "-o",
+                                     output(),          "--max-radius", "8",   "--min-radius", "2"};
+    command.insert(command.end(), options.begin(), options.end());
+    return run(command);
+  }
+
+  TemporaryFolder folder_;
+};
+
+// --- aerate slice ---
+
+TEST_F(Slicing, PicksTheFormThatTakesTheLeastByPrusaSlicersFigures) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path config =
+      folder_.write("my settings.ini",
+                    "fill_density = 40%\nfill_pattern = gyroid\nlayer_height = 0.3\n"
+                    "filament_density = 1.24\nfilament_cost = 25\npost_process = /bin/false\n");
+  const ProcessResult result = slice(block(), "prusa-slicer", {"--config", config, "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "post-processing programs of the settings are not run"));
+  const Json report = Json::parse(result.out);
+  ASSERT_EQ(report["forms"].size(), 3u);
+  std::map<std::string, double> filament;
+  for (const Json& form : report["forms"]) {
+    filament[form["form"]] = form["filament_mm"];
+    for (const char* figure : {"filament_cm3", "filament_g", "cost", "seconds"})
+      EXPECT_GT(form[figure], 0) << figure;
+    EXPECT_EQ(form["layers"], 60) << form["form"];
+  }
+  const std::string written = read_bytes(output());
+  const double least = std::min({filament["solid"], filament["voids"], filament["modifiers"]});
+  EXPECT_DOUBLE_EQ(figures_of(written).filament_mm.value(), least);
+  EXPECT_DOUBLE_EQ(filament.at(report["output"]["form"]), least);
+  EXPECT_LT(least, filament["solid"]);
+  EXPECT_EQ(setting_in(written, "fill_density").value(), "40%");
+}
+
+TEST_F(Slicing, WritesTheSolidPrintWhenNothingTakesLess) {
+  AERATE_NEEDS("slic3r");
+  // Small voids at sparse infill: their walls cost more than they save, and Slic3r has no modifiers.
+  const fs::path config =
+      folder_.write("sparse.ini", "fill_density = 5%\nlayer_height = 0.3\npost_process = /bin/false\n");
+  const ProcessResult result = slice(block(), "slic3r", {"--config", config, "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  ASSERT_EQ(report["forms"].size(), 2u);
+  EXPECT_EQ(report["output"]["form"], "solid");
+  EXPECT_GT(report["forms"][1]["filament_mm"], report["forms"][0]["filament_mm"]);
+  EXPECT_EQ(figures_of(read_bytes(output())).filament_mm.value(), report["forms"][0]["filament_mm"]);
+}
+
+TEST_F(Slicing, Slic3rPrintsVoids) {
+  AERATE_NEEDS("slic3r");
+  const fs::path config =
+      folder_.write("dense.ini", "fill_density = 100%\nfill_pattern = rectilinear\nlayer_height = 0.3\n");
+  const ProcessResult result = slice(block(), "slic3r", {"--config", config, "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(Json::parse(result.out)["output"]["form"], "voids");
+  EXPECT_TRUE(contains(slice(block(), "slic3r", {"--as", "modifiers"}).err, "reads no modifiers"));
+}
+
+TEST_F(Slicing, ShowsAllThatAFailingSlicerPrinted) {
+  const FakeSlicer fake(folder_);
+  fake.behave("echo first; echo second >&2; echo third; exit 3");
+  const ProcessResult result = slice(block(), "prusa-slicer", {"--slicer-path", fake.program()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "failed with status 3 on block.stl; it printed:\nfirst\nsecond\nthird\n"));
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
+TEST_F(Slicing, RefusesWhatIsMissing) {
+  const FakeSlicer fake(folder_);
+  EXPECT_EQ(slice(block(), "prusa-slicer", {"--slicer-path", "/none"}).exit_code, 2);
+  const ProcessResult result =
+      slice(block(), "prusa-slicer", {"--slicer-path", fake.program(), "--config", "/none.ini"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(contains(result.err, "/none.ini: no settings"));
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
+// --- aerate hook, called by PrusaSlicer ---
+
+TEST_F(Slicing, PrusaSlicerCallsTheHookAndGetsTheBetterGcode) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path odd = folder_.path() / "it's a model";
+  fs::create_directory(odd);
+  const fs::path part = odd / "block (1).stl";
+  fs::copy_file(block(), part);
+  const std::vector<std::string> options{"--fill-density", "40%", "--fill-pattern", "gyroid",
+                                         "--layer-height", "0.3"};
+  const GcodeFigures solid = slice_with_prusa(part, folder_.path() / "solid.gcode", options);
+
+  std::string line = run({AERATE_EXECUTABLE, "hook", "--print-setup", "prusa-slicer", "--model", part}).out;
+  line.pop_back();
+  auto hooked = options;
+  hooked.insert(hooked.end(), {"--post-process", line + " --max-radius 8 --min-radius 2"});
+  const GcodeFigures figures = slice_with_prusa(part, output(), hooked);
+  const std::string gcode = read_bytes(output());
+  EXPECT_TRUE(contains(gcode, "; aerate_result = modifiers\n"));
+  EXPECT_LT(figures.filament_mm.value(), solid.filament_mm.value());
+  EXPECT_TRUE(contains(gcode, "(solid " + std::to_string(solid.filament_mm.value()).substr(0, 6)));
+  EXPECT_TRUE(contains(setting_in(gcode, "post_process").value(), "hook --model"));
+
+  // The slicer still reads its settings from it.
+  const auto again = folder_.path() / "again.gcode";
+  const ProcessResult loaded = run(
+      {"prusa-slicer", "--load", output(), "--post-process", "", "--export-gcode", "--output", again, part});
+  EXPECT_EQ(loaded.exit_code, 0) << loaded.err;
+  EXPECT_EQ(setting_in(read_bytes(again), "fill_density").value(), "40%");
+}
+
+TEST_F(Slicing, TheHookRefusesModelsThatDoNotStandAsInTheFile) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path part = model("part.stl", tetrahedron());
+  Mesh mirrored = tetrahedron();
+  for (Vec3f& p : mirrored.positions) p.x = -p.x;
+  const fs::path mirror = model("mirror.stl", turned_inside_out(mirrored));
+  const fs::path other = model("other.stl", make_box({0, 0, 0}, {8, 8, 8}));
+  const std::vector<std::vector<std::string>> cases{
+      {"--rotate", "30", part},    {"--scale", "1.02", part},  {mirror},
+      {"--center", "70,70", part}, {"--rotate-x", "90", part}, {"--duplicate", "2", part},
+      {"--merge", part, other}};
+  for (const auto& arguments : cases) {
+    std::vector<std::string> command{"prusa-slicer", "--export-gcode", "--layer-height",
+                                     "0.3",          "--output",       output()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    ASSERT_EQ(run(command).exit_code, 0) << arguments.front();
+    const std::string before = read_bytes(output());
+    const ProcessResult result = run({AERATE_EXECUTABLE, "hook", "--model", part, output()});
+    EXPECT_EQ(result.exit_code, 3) << arguments.front() << ": " << result.err;
+    EXPECT_TRUE(contains(result.err, "does not give the same G-code")) << arguments.front();
+    EXPECT_EQ(read_bytes(output()), before) << arguments.front();
+    EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{"out.gcode"});
+  }
+}
+
+TEST_F(Slicing, AFailingHookFailsTheExport) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path part = model("part.stl", tetrahedron());
+  const ProcessResult result =
+      run({"prusa-slicer", "--export-gcode", "--post-process",
+           std::string(AERATE_EXECUTABLE) + " hook --model /none.stl", "--output", output(), part});
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_TRUE(contains(result.out + result.err, "/none.stl"));
+}
+
+TEST_F(Slicing, AProjectKeepsItsPlace) {
+  AERATE_NEEDS("prusa-slicer");
+  // A block somewhere on the bed, as a project says it: the hook does not put it into the middle.
+  const fs::path part = model("part.stl", make_box({30, 40, 0}, {52, 60, 18}));
+  const fs::path project = folder_.path() / "project.3mf";
+  write_mesh(make_box({30, 40, 0}, {52, 60, 18}), project, MeshFormat::three_mf);
+  const std::vector<std::string> options{"--dont-arrange", "--fill-density", "40%", "--fill-pattern",
+                                         "gyroid",         "--layer-height", "0.3"};
+  slice_with_prusa(part, output(), options);
+  const ProcessResult result = run(
+      {AERATE_EXECUTABLE, "hook", "--model", project, "--max-radius", "8", "--min-radius", "2", output()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string gcode = read_bytes(output());
+  EXPECT_TRUE(contains(gcode, "; aerate_result = modifiers\n"));
+}
+
+// --- CuraEngine ---
+
+fs::path cura_definition() {
+  for (const char* folder : {AERATE_CURA_DEFINITIONS, "/usr/share/cura/resources/definitions"}) {
+    const fs::path file = fs::path(folder) / "fdmprinter.def.json";
+    if (fs::exists(file)) return file;
+  }
+  return {};
+}
+
+TEST_F(Slicing, CuraEngineLeavesTheVoidsLayerByLayer) {
+  AERATE_NEEDS("CuraEngine");
+  if (cura_definition().empty())
+    GTEST_SKIP() << "no definitions for CuraEngine: scripts/install-dependencies --checks fetches them";
+  const fs::path solid = model("solid.stl", make_box({0, 0, 0}, {20, 20, 20})),
+                 hollow = folder_.path() / "hollow.stl";
+  // One void in the middle, from 2 to 18 mm.
+  ASSERT_EQ(run({AERATE_EXECUTABLE, "hollow", solid, "-o", hollow, "--wall", "2", "--max-radius", "8",
+                 "--min-radius", "7"})
+                .exit_code,
+            0);
+  // Lines side by side, so that what is filled is seen in the length.
+  const fs::path settings =
+      folder_.write("settings.txt", "layer_height=0.2\ninfill_pattern=lines\ninfill_line_distance=0.4\n");
+  Monitor monitor;
+  std::map<std::string, std::map<int, double>> fed;  // by height, hundredths of a millimetre
+  for (const fs::path& file : {solid, hollow}) {
+    const fs::path gcode = folder_.path() / (file.stem().string() + ".gcode");
+    const Slicer slicer = find_slicer(SlicerKind::cura_engine, {});
+    const GcodeFigures figures = aerate::slice(
+        slicer,
+        {.model = file, .gcode = gcode, .settings = {{cura_definition(), settings}}, .scratch = outputs()},
+        monitor);
+    EXPECT_GT(figures.seconds.value(), 60);
+    EXPECT_GT(figures.filament_cm3.value(), 1);
+    for (const ExtrusionMove& move : extrusion_moves(read_bytes(gcode)))
+      fed[file.stem()][static_cast<int>(std::lround(move.z * 100))] += move.filament;
+  }
+  ASSERT_GT(fed["solid"].size(), 90u);
+  std::size_t through_the_void = 0;
+  for (const auto& [layer, length] : fed["solid"]) {
+    const double height = layer / 100.0, hollow_length = fed["hollow"][layer];
+    // Radius of the void at this height.
+    const double square = 64 - (height - 10) * (height - 10);
+    if (height > 0.5 && height < 1.5) {
+      EXPECT_NEAR(hollow_length, length, 0.01 * length) << height;
+    }
+    if (square < 9) continue;
+    ++through_the_void;
+    // The void's disk is missing, but for the walls round it (two lines of 0.4 mm).
+    const double radius = std::sqrt(square), missing = 3.14159 * radius * radius / 400;
+    EXPECT_LT(hollow_length, length * (1 - 0.5 * missing)) << height;
+    EXPECT_GT(hollow_length, length * (1 - 1.3 * missing)) << height;
+  }
+  EXPECT_GT(through_the_void, 60u);
+}
+
+TEST_F(Slicing, CuraEngineByTheCommand) {
+  AERATE_NEEDS("CuraEngine");
+  if (cura_definition().empty())
+    GTEST_SKIP() << "no definitions for CuraEngine: scripts/install-dependencies --checks fetches them";
+  const fs::path settings =
+      folder_.write("settings.txt", "# dense\nlayer_height=0.3\ninfill_line_distance = 0.4\n");
+  const ProcessResult result =
+      slice(block(), "cura-engine", {"--config", cura_definition(), "--config", settings, "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  EXPECT_EQ(report["output"]["form"], "voids");
+  const std::string gcode = read_bytes(output());
+  EXPECT_TRUE(gcode.starts_with(";FLAVOR:Marlin\n"));
+  EXPECT_FALSE(contains(gcode, ";TIME:6666"));  // the header with the true figures is in
+  EXPECT_DOUBLE_EQ(figures_of(gcode).seconds.value(), report["forms"][1]["seconds"].get<double>());
+}
+
+}  // namespace
+}  // namespace aerate::test
