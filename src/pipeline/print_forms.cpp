@@ -15,7 +15,7 @@ namespace {
 
 // The slicer names the object after the file, so that every form keeps the model's name.
 std::filesystem::path folder_of(PrintForm form, const FormJob& job) {
-  const std::filesystem::path folder = job.scratch / name_of(form);
+  std::filesystem::path folder = job.scratch / name_of(form);
   std::filesystem::create_directory(folder);
   return folder;
 }

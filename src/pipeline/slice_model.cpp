@@ -31,6 +31,7 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
                     .scratch = scratch.path()};
   // Hollowing is quick beside slicing, and says sooner that nothing can be removed.
   std::vector<SlicedForm> forms;
+  forms.reserve(hollowed.size() + 1);
   for (const PrintForm form : hollowed) forms.push_back(slice_form(form, job, log));
   forms.insert(forms.begin(), slice_form(PrintForm::solid, job, log));
   report.forms = std::move(forms);
