@@ -40,7 +40,7 @@ struct SurfaceAnchor {
   // 0 if nothing is known; inside the solid it may be too small. Of voids with roofs, inside: the largest
   // radius and wall.
   double signed_distance;
-  std::uint32_t facet;     // may be kNoFacet
+  std::uint32_t facet;  // may be kNoFacet
 };
 
 template <typename Shape>
