@@ -215,13 +215,6 @@ double largest_coordinate(const Sphere& ball) {
   return std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) + ball.radius;
 }
 
-// How far inside the ball its vertices are planned, so that none of them leaves it when its coordinates are
-// rounded to fp32. The largest coordinate M of the ball rounds by at most 2^-24 M, so a vertex moves by at
-// most sqrt(3) 2^-24 M < 2^-23 M; what is left covers the rounding of the fp64 arithmetic.
-double rounding_margin(const Sphere& ball) {
-  return std::ldexp(largest_coordinate(ball), -23);
-}
-
 // Greatest sagitta of a template for the ball, whose surface then lies at most `radius * sagitta + 2 *
 // rounding_margin` deep. Negative or tiny if there is none.
 double allowed_sagitta(const Sphere& ball, double tolerance) {
@@ -270,6 +263,12 @@ std::size_t likely_level(double sagitta) {
 }
 
 }  // namespace
+
+// The largest coordinate M of the ball rounds by at most 2^-24 M, so a vertex moves by at
+// most sqrt(3) 2^-24 M < 2^-23 M; what is left covers the rounding of the fp64 arithmetic.
+double rounding_margin(const Sphere& ball) {
+  return std::ldexp(largest_coordinate(ball), -23);
+}
 
 std::optional<BallTemplate> project_onto_ball(const Mesh& surface, Vec3d centre) {
   std::vector<Vec3d> directions;

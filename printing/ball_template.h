@@ -34,6 +34,9 @@ std::optional<BallTemplate> project_onto_ball(const Mesh& surface, Vec3d centre)
 // nullopt if the result fails the checks of `project_onto_ball`.
 std::optional<BallTemplate> relax(BallTemplate ball);
 
+// How far inside a ball its vertices are planned, mm, so that none leaves it when it is rounded to fp32.
+double rounding_margin(const Sphere& ball);
+
 // The outer surface and the balls' as voids, facing inward, by a template for each. All of a void's surface
 // lies within its ball. Throws FailureError for more vertices than 32 bits can count.
 Solid assemble(Mesh outer, std::span<const Sphere> balls, std::span<const BallTemplate* const> templates);

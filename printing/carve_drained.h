@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/drainage.h"
+#include "core/mesh.h"
+#include "core/monitor.h"
+#include "core/solid.h"
+#include "printing/carve.h"
+
+namespace aerate {
+
+// Can the surface be cut where this tube leaves the model? See `cut_surface`.
+bool can_cut(const Mesh& outer, const Tube& tube, const Sphere& ball, Vec3d up, double tolerance);
+
+// Carves balls, the channels between them and their escape holes.
+//
+// Each ball's surface is that of `carve_keeping_surface` with openings where tubes meet it (open_ball.h). A
+// tube is a prism inscribed in it, so tubes are never wider than planned; at both ends its lines end in the
+// openings' rings, so that neighbours share their vertices bit for bit and no boolean of the whole is needed.
+// The outer surface is cut around the escape holes alone (cut_surface.h); all other triangles keep their
+// order. Throws as `carve_keeping_surface`, and FailureError if a surface cannot be made as planned.
+DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,
+                           const CarveOptions& options, Monitor& monitor);
+
+// No more triangles than this are added to those of the sealed voids and the model.
+std::size_t most_drainage_triangles(const DrainagePlan& plan, const Mesh& outer, double tolerance);
+
+}  // namespace aerate
