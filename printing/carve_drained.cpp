@@ -38,8 +38,9 @@ Tube shrunk(const Tube& tube) {
   return smaller;
 }
 
+// Fine enough for openings that a tube meets obliquely: their edges are up to 2.5 times as long as its own.
 std::size_t sides_of(const Tube& tube, double tolerance) {
-  return tube_sides(tube.radius, tolerance / 2);
+  return tube_sides(tube.radius, tolerance / 8);
 }
 
 Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up, double tolerance) {
@@ -160,12 +161,11 @@ class DrainedCarver {
       std::size_t opening = 0;
       for (std::uint32_t first = 0; first < hole_rings_[i].first; ++opening)
         first += static_cast<std::uint32_t>(parts_[hole.from].openings[opening].ring.size());
-      const auto cut =
-          cut_surface(mesh, prism_of(hole.tube, parts_[hole.from].openings[opening]));
+      const auto cut = cut_surface(mesh, prism_of(hole.tube, parts_[hole.from].openings[opening]));
       if (!cut)
         throw FailureError("the surface cannot be cut for an escape hole near (" +
-                               std::to_string(hole.tube.end.x) + ", " + std::to_string(hole.tube.end.y) + ", " +
-                               std::to_string(hole.tube.end.z) + ") mm",
+                               std::to_string(hole.tube.end.x) + ", " + std::to_string(hole.tube.end.y) +
+                               ", " + std::to_string(hole.tube.end.z) + ") mm",
                            "ask for other places with --escape-hole");
       std::size_t kept = 0;
       std::size_t next = 0;
@@ -195,8 +195,7 @@ class DrainedCarver {
 
   void add_channel(std::size_t index) {
     const auto [start, end] = channel_rings_[index];
-    const auto sides =
-        static_cast<std::uint32_t>(sides_of(plan_.channels[index].tube, tolerance_));
+    const auto sides = static_cast<std::uint32_t>(sides_of(plan_.channels[index].tube, tolerance_));
     const std::uint32_t a = parts_[start.ball].first_vertex + start.first;
     const std::uint32_t b = parts_[end.ball].first_vertex + end.first;
     for (std::uint32_t i = 0; i < sides; ++i) {

@@ -26,7 +26,4 @@ bool can_cut(const Mesh& outer, const Tube& tube, const Sphere& ball, Vec3d up, 
 DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,
                            const CarveOptions& options, Monitor& monitor);
 
-// No more triangles than this are added to those of the sealed voids and the model.
-std::size_t most_drainage_triangles(const DrainagePlan& plan, const Mesh& outer, double tolerance);
-
 }  // namespace aerate

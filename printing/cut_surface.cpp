@@ -59,8 +59,8 @@ std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const CuttingPrism& 
     const Vec3f a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
     const Vec3d least = to_double(min_of(a, min_of(b, c)));
     const Vec3d most = to_double(max_of(a, max_of(b, c)));
-    if (least.x > upper.x || least.y > upper.y || least.z > upper.z || most.x < lower.x ||
-        most.y < lower.y || most.z < lower.z) {
+    if (least.x > upper.x || least.y > upper.y || least.z > upper.z || most.x < lower.x || most.y < lower.y ||
+        most.z < lower.z) {
       continue;
     }
     if (distance_to_facet(axis, {a, b, c}) < reach) near.push_back(i);
@@ -146,8 +146,7 @@ class Cut {
     auto patch = take_patch(mesh_, near_, prism_.axis);
     if (!patch) return std::nullopt;
     SurfaceMesh prism = make_prism(prism_);
-    EdgeFlags on_patch =
-        patch->surface.add_property_map<SurfaceMesh::Edge_index, bool>("e:cut", false).first;
+    EdgeFlags on_patch = patch->surface.add_property_map<SurfaceMesh::Edge_index, bool>("e:cut", false).first;
     EdgeFlags on_prism = prism.add_property_map<SurfaceMesh::Edge_index, bool>("e:cut", false).first;
     try {
       pmp::corefine(patch->surface, prism,
@@ -241,7 +240,8 @@ class Cut {
     if (!parts) return false;
     const std::size_t sides = prism_.ring.size();
     const auto part_of = [&](std::size_t vertex) {
-      return (*parts)[prism.face(prism.halfedge(SurfaceMesh::Vertex_index(static_cast<std::uint32_t>(vertex))))];
+      return (
+          *parts)[prism.face(prism.halfedge(SurfaceMesh::Vertex_index(static_cast<std::uint32_t>(vertex))))];
     };
     const std::size_t inside = part_of(0);
     for (std::size_t i = 0; i < sides; ++i) {

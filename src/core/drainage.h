@@ -32,8 +32,8 @@ struct Channel {
   Tube tube;
 };
 
-// A way out of a void. All of it that is outside the ball lies beyond `tube.start`; its axis meets the model's
-// surface at `tube.end`.
+// A way out of a void. All of it that is outside the ball lies beyond `tube.start`; its axis meets the
+// model's surface at `tube.end`.
 struct EscapeHole {
   std::uint32_t from = 0;
   Tube tube;

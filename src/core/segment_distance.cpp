@@ -38,8 +38,7 @@ double distance_between(const Segment& a, const Segment& b) {
   if (determinant > 0) {
     const double s = (ab * dot(db, between) - bb * dot(da, between)) / determinant;
     const double t = (aa * dot(db, between) - ab * dot(da, between)) / determinant;
-    if (s > 0 && s < 1 && t > 0 && t < 1)
-      nearest = std::min(nearest, length(between + da * s - db * t));
+    if (s > 0 && s < 1 && t > 0 && t < 1) nearest = std::min(nearest, length(between + da * s - db * t));
   }
   return nearest;
 }

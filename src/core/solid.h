@@ -33,7 +33,7 @@ struct DrainedSolid {
   Mesh mesh;
   std::vector<std::uint32_t> cut_triangles;  // of the model, ascending: those that are not in the mesh
   std::size_t kept_triangle_count = 0;
-  std::size_t outer_triangle_count = 0;  // with what is left of the cut ones
+  std::size_t outer_triangle_count = 0;                         // with what is left of the cut ones
   std::vector<std::size_t> void_ends, channel_ends, hole_ends;  // index after the last triangle of each
 };
 

@@ -48,9 +48,8 @@ std::vector<Vec3d> directions_about(Vec3d axis) {
   for (int i = 0; i < kDirections; ++i) {
     const double along = 1 - (i + 0.5) / kDirections;
     const double across = std::sqrt(1 - along * along);
-    directions.push_back(axis * along + (frame.down * std::cos(golden * i) +
-                                         frame.across * std::sin(golden * i)) *
-                                            across);
+    directions.push_back(axis * along +
+                         (frame.down * std::cos(golden * i) + frame.across * std::sin(golden * i)) * across);
   }
   return directions;
 }
@@ -121,7 +120,7 @@ bool HolePlaces::is_sound(const EscapeHole& hole) const {
     if (winding_.view().winding_number(p) != 0) return false;
     if (clearance_.to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
   }
-  return clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) && 
+  return clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) &&
          clearance_.keeps_gap_to_tubes(tube, hole.from, hole.from);
 }
 
@@ -165,8 +164,7 @@ std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls,
     // Lowered so far that the tube's axis passes the centre at that distance.
     const double across = std::sqrt(std::max(1e-6, 1 - dot(direction, down) * dot(direction, down)));
     const double shift = std::min(lower / across, ball.radius * 0.99);
-    const auto tube =
-        tube_out_of(ball, ball.centre + down * shift, direction, 1, request_.hole_radius);
+    const auto tube = tube_out_of(ball, ball.centre + down * shift, direction, 1, request_.hole_radius);
     if (!tube) return;
     Place& place = places[i];
     place.hole = {from, *tube, 0};
@@ -202,8 +200,8 @@ std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std:
     for (int i = 0; i < 1 + 6 * kPoints; ++i) {
       // The centre, and points around it along the axes.
       const double shift = ball.radius * 0.85 * ((i + 5) / 6) / kPoints;
-      constexpr std::array<Vec3d, 6> kAxes{
-          Vec3d{0, 0, -1}, Vec3d{0, 0, 1}, Vec3d{1, 0, 0}, Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 0}};
+      constexpr std::array<Vec3d, 6> kAxes{Vec3d{0, 0, -1}, Vec3d{0, 0, 1}, Vec3d{1, 0, 0},
+                                           Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 0}};
       const Vec3d inside = ball.centre + kAxes[static_cast<std::size_t>((i + 5) % 6)] * shift;
       const double distance = length(on_surface - inside);
       if (distance <= ball.radius) continue;

@@ -31,7 +31,8 @@ class HolePlaces {
   // if the surface is farther than the hole's diameter from there.
   std::vector<EscapeHole> leading_to(Vec3d place, std::span<const std::uint32_t> balls) const;
 
-  // Does the tube keep the wall on its way to the surface, meets it not too obliquely, and open to the outside?
+  // Does the tube keep the wall on its way to the surface, meets it not too obliquely, and open to the
+  // outside?
   bool is_sound(const EscapeHole& hole) const;
 
  private:

@@ -64,7 +64,9 @@ std::string shortened(double value) {
 
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t size) : parents_(size) { std::iota(parents_.begin(), parents_.end(), 0U); }
+  explicit DisjointSets(std::size_t size) : parents_(size) {
+    std::iota(parents_.begin(), parents_.end(), 0U);
+  }
   std::uint32_t root(std::uint32_t i) {
     while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
     return i;
@@ -155,8 +157,7 @@ double Planner::largest_radius() const {
 
 double Planner::volume_of(const Members& members) const {
   double volume = 0;
-  for (const std::uint32_t i : members)
-    volume += volume_below(spheres_[i], request_.up, kInfinity);
+  for (const std::uint32_t i : members) volume += volume_below(spheres_[i], request_.up, kInfinity);
   return volume;
 }
 
@@ -208,9 +209,9 @@ std::vector<Planner::Members> Planner::networks() {
     }
     for (const std::uint32_t b : clearance_.neighbours(a)) {
       if (b > a && is_wide[b])
-        pairs.push_back({length(spheres_[a].centre - spheres_[b].centre) - spheres_[a].radius -
-                             spheres_[b].radius,
-                         a, b});
+        pairs.push_back(
+            {length(spheres_[a].centre - spheres_[b].centre) - spheres_[a].radius - spheres_[b].radius, a,
+             b});
     }
   }
   std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
@@ -233,9 +234,8 @@ std::vector<Planner::Members> Planner::networks() {
     if (is_wide[i]) by_root[sets.root(i)].push_back(i);
   }
   std::erase_if(by_root, [](const Members& members) { return members.empty(); });
-  std::stable_sort(by_root.begin(), by_root.end(), [&](const Members& a, const Members& b) {
-    return volume_of(a) > volume_of(b);
-  });
+  std::stable_sort(by_root.begin(), by_root.end(),
+                   [&](const Members& a, const Members& b) { return volume_of(a) > volume_of(b); });
   return by_root;
 }
 
@@ -323,12 +323,11 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
     for (const std::uint32_t i : networks[n]) network_of_[i] = n;
     const bool is_worth_it =
         !request_.escape_holes.empty() || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
-    if (!is_worth_it || (!has_low_hole(networks[n], n) &&
-                         !open_one(places_.ranked(networks[n], -request_.up), n)))
+    if (!is_worth_it ||
+        (!has_low_hole(networks[n], n) && !open_one(places_.ranked(networks[n], -request_.up), n)))
       leave_out(n);
   }
-  const std::vector<Candidate> ways =
-      flood(request_.up, [this](const Channel& channel) { place(channel); });
+  const std::vector<Candidate> ways = flood(request_.up, [this](const Channel& channel) { place(channel); });
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
     Members reached;
     for (const std::uint32_t i : networks[n]) {
@@ -456,7 +455,8 @@ void Planner::empty_pools() {
     if (network_of_[i] == kOutside || upright.height[i] == kInfinity) continue;
     const double left = volume_below(spheres_[i], request_.up, upright.height[i]);
     if (left < kPoolWorthWay * volume_of({i})) continue;
-    for (std::uint32_t at = i; at != kOutside && ways[at].to != kOutside && !is_on_way[at]; at = ways[at].from)
+    for (std::uint32_t at = i; at != kOutside && ways[at].to != kOutside && !is_on_way[at];
+         at = ways[at].from)
       is_on_way[at] = true;
   }
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {

@@ -61,11 +61,10 @@ Pools find_pools(std::span<const Sphere> spheres, const DrainagePlan& plan, cons
   for (std::size_t i = 0; i < spheres.size(); ++i)
     pools.of_ball.push_back(volume_below(spheres[i], up, spills.height[i]));
   for (const Channel& channel : plan.channels) {
-    const double through_start =
-        std::max(opening_floor(channel.tube, TubeEnd::start, spheres[channel.from], up),
-                 spills.height[channel.from]);
-    const double through_end = std::max(
-        opening_floor(channel.tube, TubeEnd::end, spheres[channel.to], up), spills.height[channel.to]);
+    const double through_start = std::max(
+        opening_floor(channel.tube, TubeEnd::start, spheres[channel.from], up), spills.height[channel.from]);
+    const double through_end = std::max(opening_floor(channel.tube, TubeEnd::end, spheres[channel.to], up),
+                                        spills.height[channel.to]);
     pools.of_channel.push_back(tube_volume_below(channel.tube, up, std::min(through_start, through_end)));
   }
   return pools;
@@ -110,8 +109,7 @@ double sill_of_hole(const EscapeHole& hole, const Sphere& ball, Vec3d up) {
 }
 
 double volume_below(const Sphere& ball, Vec3d up, double height) {
-  const double depth =
-      std::clamp(height - (dot(ball.centre, up) - ball.radius), 0.0, 2 * ball.radius);
+  const double depth = std::clamp(height - (dot(ball.centre, up) - ball.radius), 0.0, 2 * ball.radius);
   return std::numbers::pi * depth * depth * (3 * ball.radius - depth) / 3;
 }
 

@@ -6,10 +6,10 @@
 
 #include "core/drainage.h"
 
-// Where liquid stays in drained voids. It is at rest, flows slowly, and leaves a ball through the lowest point
-// of an opening: the spill height of a ball is the least height, over all ways out, of the highest sill on the
-// way, found for all balls at once by a flood in order of height (priority flood; Barnes, Lehman and Mulla,
-// "Priority-flood", 2014). What lies below it stays.
+// Where liquid stays in drained voids. It is at rest, flows slowly, and leaves a ball through the lowest
+// point of an opening: the spill height of a ball is the least height, over all ways out, of the highest sill
+// on the way, found for all balls at once by a flood in order of height (priority flood; Barnes, Lehman and
+// Mulla, "Priority-flood", 2014). What lies below it stays.
 
 namespace aerate {
 

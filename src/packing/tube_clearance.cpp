@@ -128,8 +128,8 @@ bool TubeClearance::keeps_gap_to_tubes(const Tube& tube, std::uint32_t from, std
           const Placed& placed = tubes_[other];
           const bool meet = placed.from == from || placed.from == to || placed.to == from || placed.to == to;
           const double openings = kLeastSpacingShare * std::max(tube.radius, placed.tube.radius);
-          const double spacing = tube.radius + placed.tube.radius +
-                                 (meet ? openings : std::max(limits_.gap, openings));
+          const double spacing =
+              tube.radius + placed.tube.radius + (meet ? openings : std::max(limits_.gap, openings));
           if (distance_between({tube.start, tube.end}, {placed.tube.start, placed.tube.end}) < spacing)
             return false;
         }

@@ -8,8 +8,8 @@
 #include "core/drainage.h"
 #include "core/mesh.h"
 #include "core/packing.h"
-#include "kernels/triangle_bvh.h"
 #include "core/segment_distance.h"
+#include "kernels/triangle_bvh.h"
 
 namespace aerate {
 
