@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/drainage_options.h"
 #include "cli/model_options.h"
 #include "cli/numbers.h"
 #include "cli/print_options.h"
@@ -21,6 +22,7 @@ struct HollowCommand::Options {
       : command(*app.add_subcommand("hollow", "Remove packed spheres from a model and write the result")),
         model(command),
         packing(command, config),
+        drainage(command, config),
         print(command),
         run(command) {
     command.add_option("-o,--output", output, "The result: .stl, .obj or .ply (required)")
@@ -77,6 +79,7 @@ struct HollowCommand::Options {
     options.output = output;
     options.load = model.load();
     options.packing = packing.request();
+    options.drainage = drainage.request(options.packing.process);
     if (!spheres.empty()) {
       options.packing.method = PackingMethod::given;
       options.packing.spheres = spheres;
@@ -104,6 +107,7 @@ struct HollowCommand::Options {
   CLI::App& command;
   ModelOptions model;
   PackingCommandOptions packing;
+  DrainageOptions drainage;
   PrintOptions print;
   RunOptions run;
   std::string output;

@@ -42,14 +42,29 @@ ProcessOptions::ProcessOptions(CLI::App& command, const ConfigFile& config)
             ->check(number_between(may_be_zero ? std::optional(0.0) : std::nullopt, kLongest, "mm"))
             ->type_name("MM");
   }
+  const auto is_direction = [](const std::string& text) {
+    return parse_direction(text)
+               ? std::string()
+               : fmt::format("'{}' is no direction: give +x, -x, +y, -y, +z, -z or three numbers x,y,z", text);
+  };
+  up_option_ = command
+                   .add_option("--up", up_,
+                               "Which way is up in print: +x, -x, +y, -y, +z, -z or x,y,z (write --up=-z)")
+                   ->check(CLI::Validator(is_direction, ""))
+                   ->type_name("DIRECTION")
+                   ->capture_default_str();
 }
 
 ProcessChoice ProcessOptions::choice() const {
   std::vector<GivenLimit> given;
   for (const Given& own : given_)
     if (own.option->count() > 0) given.push_back({own.limit, own.value, config_.origin_of(*own.option)});
-  return limits_under(choose_process(process_), given,
-                      process_option_->count() > 0 ? ProcessCheck::strict : ProcessCheck::none);
+  ProcessChoice choice =
+      limits_under(choose_process(process_), given,
+                   process_option_->count() > 0 ? ProcessCheck::strict : ProcessCheck::none);
+  if (up_option_->count() > 0)
+    choice.direction = {parse_direction(up_).value(), up_, config_.origin_of(*up_option_)};
+  return choice;
 }
 
 }  // namespace aerate::cli

@@ -12,7 +12,7 @@ namespace aerate::cli {
 // Thrown while options are read for `--process list`: the processes are to be listed, and nothing else done.
 class ProcessListRequest : public CLI::Success {};
 
-// --process, --wall, --gap, --min-radius, --max-radius
+// --process, --wall, --gap, --min-radius, --max-radius, --up
 class ProcessOptions {
  public:
   ProcessOptions(CLI::App& command, const ConfigFile& config);
@@ -31,6 +31,8 @@ class ProcessOptions {
   std::string process_ = "fdm";
   CLI::Option* process_option_ = nullptr;
   std::array<Given, 4> given_;
+  std::string up_ = PrintDirection{}.name;
+  CLI::Option* up_option_ = nullptr;
 };
 
 }  // namespace aerate::cli

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <tbb/parallel_for.h>
 
@@ -20,10 +22,12 @@ constexpr double kLongestInDiameters = 3;
 constexpr double kLongestInWalls = 3;
 
 // Balls that are looked at for one hole, and directions from each.
-constexpr std::size_t kMostBalls = 16;
+constexpr std::size_t kMostBalls = 48;
 constexpr int kDirections = 64;
-constexpr double kRoomyRadii = 1.4;
-constexpr double kLowShare = 0.3;  // of the network's height, from its low end
+
+// A ball is roomy if the distance of its centre from the hole's rim is at least this share of that between the
+// axes of the hole and of a channel: the two then open into it at 113 degrees from each other or less.
+constexpr double kRoomyShare = 0.6;
 
 // Weights of what makes a place good, in heights of the network: a tenth of it is given for a place that does
 // not show.
@@ -55,12 +59,9 @@ std::vector<Vec3d> directions_about(Vec3d axis) {
 }
 
 std::string to_text(Vec3d p) {
-  const auto number = [](double value) {
-    std::string text = std::to_string(std::round(value * 100) / 100);
-    text.erase(text.find('.') + 3);
-    return text;
-  };
-  return "(" + number(p.x) + ", " + number(p.y) + ", " + number(p.z) + ") mm";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << '(' << p.x << ", " << p.y << ", " << p.z << ") mm";
+  return text.str();
 }
 
 }  // namespace
@@ -69,14 +70,13 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
   return kLongestInDiameters * 2 * request.hole_radius + kLongestInWalls * limits.wall;
 }
 
-HolePlaces::HolePlaces(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
+HolePlaces::HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
                        const DrainageRequest& request, const TubeClearance& clearance)
-    : mesh_(mesh),
-      spheres_(spheres),
+    : spheres_(spheres),
       limits_(limits),
       request_(request),
       clearance_(clearance),
-      winding_(mesh.positions, mesh.triangles) {}
+      outward_(mesh.positions, outward_shells) {}
 
 // Follows the axis from the tube's start to the surface, by as much as is free at each point.
 bool HolePlaces::reach_surface(EscapeHole& hole) const {
@@ -106,25 +106,20 @@ double HolePlaces::showing(Vec3d place) const {
 bool HolePlaces::is_sound(const EscapeHole& hole) const {
   const Tube& tube = hole.tube;
   const Vec3d axis = normalised(tube.end - tube.start);
-  const double whole = length(tube.end - tube.start);
   const double needed = tube.radius + limits_.wall;
-  constexpr int kSamples = 32;
-  for (int i = 0; i < kSamples; ++i) {
-    const double to_end = whole * (1 - static_cast<double>(i) / kSamples);
-    const double free = std::min(needed, kLeastSlope * to_end);
-    if (clearance_.to_surface(tube.end - axis * to_end, needed) < free - kOnSurface) return false;
-  }
+  if (!clearance_.keeps_wall_on_way_out(tube, kLeastSlope)) return false;
   // Outside there has to be room, as wide as the hole.
   for (const double beyond : {tube.radius, 2 * tube.radius}) {
     const Vec3d p = tube.end + axis * beyond;
-    if (winding_.view().winding_number(p) != 0) return false;
+    if (outward_.view().winding_number(p) != 0) return false;
     if (clearance_.to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
   }
   return clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) &&
          clearance_.keeps_gap_to_tubes(tube, hole.from, hole.from);
 }
 
-std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down) const {
+std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down,
+                                           double share) const {
   const Vec3d up = -down;
   const auto bottom_of = [&](std::uint32_t i) { return dot(spheres_[i].centre, up) - spheres_[i].radius; };
   double lowest = std::numeric_limits<double>::infinity();
@@ -137,7 +132,9 @@ std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls,
   }
   // Beside a hole in a small ball there is no room for a channel.
   const auto is_roomy = [&](std::uint32_t i) {
-    return kRoomyRadii * request_.hole_radius <= spheres_[i].radius;
+    const double hole = request_.hole_radius, radius = spheres_[i].radius;
+    const double to_rim = std::sqrt(std::max(0.0, radius * radius - hole * hole));
+    return to_rim >= kRoomyShare * tube_spacing(hole, request_.channel_radius);
   };
   if (std::any_of(wide.begin(), wide.end(), is_roomy))
     std::erase_if(wide, [&](std::uint32_t i) { return !is_roomy(i); });
@@ -145,7 +142,7 @@ std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls,
                    [&](std::uint32_t a, std::uint32_t b) { return bottom_of(a) < bottom_of(b); });
   if (wide.size() > kMostBalls) wide.resize(kMostBalls);
   const double height = highest - lowest;
-  while (wide.size() > 4 && bottom_of(wide.back()) > lowest + kLowShare * height) wide.pop_back();
+  while (wide.size() > 4 && bottom_of(wide.back()) > lowest + share * height) wide.pop_back();
 
   const std::vector<Vec3d> directions = directions_about(down);
   constexpr std::size_t kPoints = 3;
@@ -187,7 +184,7 @@ std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std:
   const Vec3d on_surface = clearance_.nearest_on_surface(place);
   const double off = length(on_surface - place);
   if (off > 2 * request_.hole_radius) {
-    const bool outside = winding_.view().winding_number(place) == 0;
+    const bool outside = outward_.view().winding_number(place) == 0;
     throw UsageError("an escape hole is asked for at " + to_text(place) + ", which is " +
                          std::to_string(off).substr(0, 5) + " mm " +
                          (outside ? "outside the model" : "inside the model, away from its surface"),

@@ -27,8 +27,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // No channel is longer than the largest void's radius, or this many channel diameters.
 constexpr double kLongestInDiameters = 4;
 
-// Places that are tried for one escape hole before it is given up.
+// Places that are tried for one escape hole before it is given up: first in this share of the network's
+// height, then anywhere.
 constexpr std::size_t kMostPlaces = 400;
+constexpr std::array<double, 2> kSharesOfHeight{0.3, 1};
+
+// A network is opened where channels reach this share of its volume, or the most of so many attempts.
+constexpr double kEnoughReached = 0.8;
+constexpr int kMostAttempts = 8;
 
 // Of the voids' volume: more holes and channels are made while more than this stays after both orientations,
 // at most so many holes, each for a pool of at least that size.
@@ -45,8 +51,9 @@ struct Attachment {
 constexpr std::array<Attachment, 7> kAttachments{
     {{0.7, -0.7}, {0.35, -0.35}, {0, 0}, {0, -0.7}, {0.7, 0}, {-0.35, -0.7}, {-0.7, -0.7}}};
 
-// A void at the end of a branch of which more than this share stays full may be left out for that.
-constexpr double kPoolOfVoid = 0.15;
+// A void at the end of a branch of which more than this share stays full may be left out for that; the lesser
+// shares where the greater are not enough.
+constexpr std::array<double, 3> kPoolsOfVoid{0.15, 0.05, 0.01};
 constexpr int kMostRounds = 20;
 
 // More channels than the tree's have to reduce what stays to this share of it.
@@ -84,21 +91,21 @@ class DisjointSets {
 
 class Planner {
  public:
-  Planner(const Mesh& mesh, const Packing& packing, const DrainageRequest& request, const CanOpen& can_open,
-          Monitor& monitor)
+  Planner(const DrainableModel& model, const Packing& packing, const DrainageRequest& request,
+          const CanOpen& can_open, Monitor& monitor)
       : spheres_(packing.spheres),
         request_(request),
         can_open_(can_open),
         monitor_(monitor),
         longest_(std::max(largest_radius(), kLongestInDiameters * 2 * request.channel_radius)),
-        clearance_(mesh, spheres_, packing.limits, std::max(longest_, longest_hole(request, packing.limits)),
+        clearance_(model.mesh, spheres_, packing.limits, std::max(longest_, longest_hole(request, packing.limits)),
                    std::max(request.channel_radius, request.hole_radius)),
-        places_(mesh, spheres_, packing.limits, request, clearance_) {
+        places_(model.outward_shells, model.mesh, spheres_, packing.limits, request, clearance_) {
     plan_.up = request.up;
   }
 
   // Throws as `plan_drainage` does.
-  Drainage run();
+  PlannedDrainage run();
 
  private:
   using Members = std::vector<std::uint32_t>;
@@ -122,9 +129,12 @@ class Planner {
   std::vector<Members> networks();
   std::vector<Members> asked_for(std::vector<Members> networks);
   bool has_low_hole(const Members& members, std::uint32_t network) const;
+  std::ptrdiff_t holes_of(std::uint32_t network) const;
   void leave_out(std::uint32_t network);
+  bool open_network(const Members& members, std::uint32_t network);
   void open_and_join(std::span<const Members> networks, double whole_volume);
   bool open_one(std::vector<EscapeHole> ranked, std::uint32_t network);
+  bool open(const Members& members, Vec3d down, std::uint32_t network);
   void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) const;
   std::vector<Candidate> flood(Vec3d up, const std::function<void(const Channel&)>& join);
   void place(const Channel& channel);
@@ -132,8 +142,8 @@ class Planner {
   void open_pools(double whole_volume);
   void empty_pools();
   TrappedPools pools_now() const { return compacted().plan.pools; }
-  void leave_out_pools();
-  Drainage compacted() const;
+  void leave_out_pools(double share_of_void);
+  PlannedDrainage compacted() const;
 
   std::span<const Sphere> spheres_;
   const DrainageRequest& request_;
@@ -289,6 +299,18 @@ bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
   return false;
 }
 
+// Opens some of the voids where liquid that runs `down` leaves them.
+bool Planner::open(const Members& members, Vec3d down, std::uint32_t network) {
+  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(), [&](double share) {
+    return open_one(places_.ranked(members, down, share), network);
+  });
+}
+
+std::ptrdiff_t Planner::holes_of(std::uint32_t network) const {
+  return std::count_if(plan_.holes.begin(), plan_.holes.end(),
+                       [network](const EscapeHole& hole) { return hole.network == network; });
+}
+
 // Is there a hole in the lower half of the network, or are there two anywhere?
 bool Planner::has_low_hole(const Members& members, std::uint32_t network) const {
   double lowest = kInfinity, highest = -kInfinity;
@@ -317,15 +339,57 @@ void Planner::leave_out(std::uint32_t network) {
   std::erase_if(plan_.channels, [&](const Channel& c) { return network_of_[c.from] == kOutside; });
 }
 
+// Opens a network below and above, before channels take the room for it: at balls from which most of it can be
+// reached. False if there is no place below.
+bool Planner::open_network(const Members& members, std::uint32_t network) {
+  const bool is_asked_for_below = has_low_hole(members, network);
+  Members candidates = members;
+  std::vector<EscapeHole> best;
+  double most = 0;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const std::size_t before = plan_.holes.size();
+    if (!is_asked_for_below && !open(candidates, -request_.up, network)) break;
+    if (holes_of(network) < 2) open(candidates, request_.up, network);
+    const std::vector<Candidate> ways = flood(request_.up, [](const Channel&) {});
+    Members reached;
+    for (const std::uint32_t i : members) {
+      if (ways[i].to != kOutside) reached.push_back(i);
+    }
+    const double volume = volume_of(reached);
+    if (volume > most) {
+      most = volume;
+      best.assign(plan_.holes.begin() + static_cast<std::ptrdiff_t>(before), plan_.holes.end());
+    }
+    std::vector<std::uint32_t> useless;
+    for (std::size_t i = before; i < plan_.holes.size(); ++i) {
+      const bool is_below = i == before && !is_asked_for_below;
+      if (is_below ? volume < kEnoughReached * volume_of(members)
+                   : ways[plan_.holes[i].from].to == kOutside)
+        useless.push_back(plan_.holes[i].from);
+    }
+    while (plan_.holes.size() > before) {
+      plan_.holes.pop_back();
+      clearance_.take_back_last();
+    }
+    if (useless.empty()) break;
+    std::erase_if(candidates, [&](std::uint32_t i) {
+      return std::find(useless.begin(), useless.end(), i) != useless.end();
+    });
+  }
+  for (const EscapeHole& hole : best) {
+    clearance_.place(hole.tube, hole.from, hole.from);
+    plan_.holes.push_back(hole);
+  }
+  return holes_of(network) > 0;
+}
+
 // Opens the networks that are worth it below, joins their voids, and opens them above.
 void Planner::open_and_join(std::span<const Members> networks, double whole_volume) {
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
     for (const std::uint32_t i : networks[n]) network_of_[i] = n;
     const bool is_worth_it =
         !request_.escape_holes.empty() || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
-    if (!is_worth_it ||
-        (!has_low_hole(networks[n], n) && !open_one(places_.ranked(networks[n], -request_.up), n)))
-      leave_out(n);
+    if (!is_worth_it || !open_network(networks[n], n)) leave_out(n);
   }
   const std::vector<Candidate> ways = flood(request_.up, [this](const Channel& channel) { place(channel); });
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
@@ -336,10 +400,8 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
     std::erase_if(plan_.holes, [&](const EscapeHole& hole) {
       return hole.network == n && ways[hole.from].to == kOutside;
     });
-    const auto holes = std::count_if(plan_.holes.begin(), plan_.holes.end(),
-                                     [n](const EscapeHole& hole) { return hole.network == n; });
     if (reached.empty()) continue;
-    if (holes >= 2 || open_one(places_.ranked(reached, request_.up), n)) {
+    if (holes_of(n) >= 2 || open(reached, request_.up, n)) {
       ++plan_.network_count;
       for (const std::uint32_t i : networks[n]) {
         if (ways[i].to != kOutside) continue;
@@ -436,7 +498,7 @@ void Planner::open_pools(double whole_volume) {
     bool opened = false;
     for (const auto& [volume, members] : upright_pools()) {
       if (volume < kPoolWorthHole * whole_volume) return;
-      opened = open_one(places_.ranked(members, -request_.up), network_of_[members.front()]);
+      opened = open(members, -request_.up, network_of_[members.front()]);
       if (opened) break;
     }
     if (!opened) return;
@@ -468,9 +530,9 @@ void Planner::empty_pools() {
   if (pools_now().after_both > kLeastGain * before) plan_.channels.resize(tree_size);
 }
 
-// Voids at the end of a branch that would stay full for the most part are not made, the worst first, until
-// little stays.
-void Planner::leave_out_pools() {
+// Voids at the end of a branch of which more than a share would stay full are not made, the worst first,
+// until little stays.
+void Planner::leave_out_pools(double share_of_void) {
   for (int round = 0; round < kMostRounds; ++round) {
     const TrappedPools pools = pools_now();
     double surplus = pools.after_both - kPoolsAimedAt * pools.total;
@@ -483,7 +545,7 @@ void Planner::leave_out_pools() {
     for (const std::uint32_t i : spills.order) {
       if (degrees[i] != 1) continue;
       const double share = volume_below(spheres_[i], request_.up, spills.height[i]) / volume_of({i});
-      if (share > kPoolOfVoid) ends.push_back({-share, i});
+      if (share > share_of_void) ends.push_back({-share, i});
     }
     if (ends.empty()) return;
     std::sort(ends.begin(), ends.end());
@@ -500,7 +562,7 @@ void Planner::leave_out_pools() {
   }
 }
 
-Drainage Planner::run() {
+PlannedDrainage Planner::run() {
   std::vector<Members> found = networks();
   if (found.empty()) {
     throw UsageError("a channel of " + shortened(2 * request_.channel_radius) +
@@ -521,13 +583,13 @@ Drainage Planner::run() {
   }
   if (request_.escape_holes.size() < 2) open_pools(whole);
   if (pools_now().after_both > kPoolsAimedAt * whole) empty_pools();
-  leave_out_pools();
+  for (const double share : kPoolsOfVoid) leave_out_pools(share);
   return compacted();
 }
 
 // The voids that are kept so far, and the plan as it counts them.
-Drainage Planner::compacted() const {
-  Drainage result;
+PlannedDrainage Planner::compacted() const {
+  PlannedDrainage result;
   result.plan = plan_;
   std::vector<std::uint32_t> renumbered(spheres_.size(), kOutside);
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
@@ -554,9 +616,9 @@ Drainage Planner::compacted() const {
 
 }  // namespace
 
-Drainage plan_drainage(const Mesh& mesh, const Packing& packing, const DrainageRequest& request,
-                       const CanOpen& can_open, Monitor& monitor) {
-  return Planner(mesh, packing, request, can_open, monitor).run();
+PlannedDrainage plan_drainage(const DrainableModel& model, const Packing& packing,
+                              const DrainageRequest& request, const CanOpen& can_open, Monitor& monitor) {
+  return Planner(model, packing, request, can_open, monitor).run();
 }
 
 }  // namespace aerate

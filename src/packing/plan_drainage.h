@@ -24,7 +24,7 @@ struct UndrainedVoids {
   std::size_t count() const { return narrow + unreached + unopened + full; }
 };
 
-struct Drainage {
+struct PlannedDrainage {
   std::vector<std::uint32_t> kept;  // indices into the packing, ascending; the plan counts these
   DrainagePlan plan;
   UndrainedVoids dropped;
@@ -35,6 +35,12 @@ inline constexpr double kLeastNetworkShare = 0.05;
 
 // Can the surface be cut along this tube, which leaves that ball?
 using CanOpen = std::function<bool(const Tube& tube, const Sphere& ball)>;
+
+// A closed model. Holes lead out of its outward shells: the space inside an inward shell is sealed itself.
+struct DrainableModel {
+  const Mesh& mesh;
+  std::span<const Triangle> outward_shells;  // those of its triangles that bound it outside
+};
 
 // Joins voids by straight channels and opens them to the outside.
 //
@@ -49,7 +55,7 @@ using CanOpen = std::function<bool(const Tube& tube, const Sphere& ball)>;
 // Deterministic. Throws UsageError if no void is wide enough, if an escape hole was asked for away from the
 // surface or where no tube reaches a void; NothingToRemoveError if no network can be opened;
 // InterruptedError.
-Drainage plan_drainage(const Mesh& mesh, const Packing& packing, const DrainageRequest& request,
-                       const CanOpen& can_open, Monitor& monitor);
+PlannedDrainage plan_drainage(const DrainableModel& model, const Packing& packing,
+                              const DrainageRequest& request, const CanOpen& can_open, Monitor& monitor);
 
 }  // namespace aerate

@@ -17,6 +17,10 @@ constexpr double kLeastSpacingShare = 0.4;
 
 }  // namespace
 
+double tube_spacing(double radius, double other_radius) {
+  return radius + other_radius + kLeastSpacingShare * std::max(radius, other_radius);
+}
+
 TubeClearance::TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
                              double longest, double widest_radius)
     : mesh_(mesh),
@@ -77,19 +81,33 @@ Vec3d TubeClearance::normal_near(Vec3d point) const {
 }
 
 bool TubeClearance::keeps_wall(const Tube& tube) const {
-  const double needed = tube.radius + limits_.wall;
+  return keeps_away(tube, tube.radius + limits_.wall, std::numeric_limits<double>::infinity());
+}
+
+bool TubeClearance::keeps_wall_on_way_out(const Tube& tube, double slope) const {
+  return keeps_away(tube, tube.radius + limits_.wall, slope);
+}
+
+bool TubeClearance::keeps_away(const Tube& tube, double most, double slope) const {
+  const bool comes_out = slope < std::numeric_limits<double>::infinity();
   const double whole = length(tube.end - tube.start);
+  // What is asked of a point at this way from the end.
+  const auto needed = [&](double left) { return comes_out ? std::min(most, slope * left) : most; };
+  // Where the surface is oblique and near, only short pieces are shown clear.
+  const double shortest = comes_out ? kWallSlack / 32 : kWallSlack / 2;
   // Pieces of the axis still to be shown clear, as shares of it.
   std::vector<std::pair<double, double>> open{{0.0, 1.0}};
   while (!open.empty()) {
     const auto [from, to] = open.back();
     open.pop_back();
+    if (comes_out && (1 - from) * whole <= kWallSlack) continue;
     const double middle = (from + to) / 2;
     const double half = (to - from) / 2 * whole;
+    const double everywhere = needed((1 - from) * whole) + half;
     const double distance =
-        to_surface(tube.start + (tube.end - tube.start) * middle, (needed + half) * (1 + 1e-9));
-    if (distance >= needed + half) continue;
-    if (distance < needed || half < kWallSlack / 2) return false;
+        to_surface(tube.start + (tube.end - tube.start) * middle, everywhere * (1 + 1e-9));
+    if (distance >= everywhere) continue;
+    if (distance < needed((1 - middle) * whole) || half < shortest) return false;
     open.push_back({from, middle});
     open.push_back({middle, to});
   }
@@ -127,9 +145,9 @@ bool TubeClearance::keeps_gap_to_tubes(const Tube& tube, std::uint32_t from, std
         for (const std::uint32_t other : found->second) {
           const Placed& placed = tubes_[other];
           const bool meet = placed.from == from || placed.from == to || placed.to == from || placed.to == to;
-          const double openings = kLeastSpacingShare * std::max(tube.radius, placed.tube.radius);
+          const double openings = tube_spacing(tube.radius, placed.tube.radius);
           const double spacing =
-              tube.radius + placed.tube.radius + (meet ? openings : std::max(limits_.gap, openings));
+              meet ? openings : std::max(openings, tube.radius + placed.tube.radius + limits_.gap);
           if (distance_between({tube.start, tube.end}, {placed.tube.start, placed.tube.end}) < spacing)
             return false;
         }
@@ -143,6 +161,12 @@ void TubeClearance::place(const Tube& tube, std::uint32_t from, std::uint32_t to
   cells_[cell_of((tube.start + tube.end) * 0.5, 0, 0, 0)].push_back(
       static_cast<std::uint32_t>(tubes_.size()));
   tubes_.push_back({tube, from, to});
+}
+
+void TubeClearance::take_back_last() {
+  const Tube& tube = tubes_.back().tube;
+  cells_[cell_of((tube.start + tube.end) * 0.5, 0, 0, 0)].pop_back();
+  tubes_.pop_back();
 }
 
 }  // namespace aerate

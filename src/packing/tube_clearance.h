@@ -13,6 +13,10 @@
 
 namespace aerate {
 
+// Distance that the axes of two tubes have to keep where both meet one ball, so that an edge of one's ring does
+// not cut the other.
+double tube_spacing(double radius, double other_radius);
+
 // Where tubes may run: answers whether a tube keeps the wall from the model's surface, and the gap from voids
 // that it does not join and from tubes that were placed before.
 class TubeClearance {
@@ -33,6 +37,11 @@ class TubeClearance {
   // the axis is clear if its middle is clear by half its length.
   bool keeps_wall(const Tube& tube) const;
 
+  // The same for a tube that comes out of the surface at its end. There the axis comes nearer, but no point of
+  // it than `slope` (the least sine of its angle with the surface) times what is left of the way. Exact but
+  // for `kWallSlack` as before, and for the last of the way that is shorter than that.
+  bool keeps_wall_on_way_out(const Tube& tube, double slope) const;
+
   // Do balls other than those two keep the gap from the tube, which starts at ball `from`?
   bool keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
 
@@ -40,6 +49,7 @@ class TubeClearance {
   // are apart by a share of their radius at least.
   bool keeps_gap_to_tubes(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
   void place(const Tube& tube, std::uint32_t from, std::uint32_t to);
+  void take_back_last();
 
   // Neighbours of a ball, the nearest first; their surfaces are nearer than `longest`.
   std::span<const std::uint32_t> neighbours(std::uint32_t ball) const;
@@ -51,6 +61,8 @@ class TubeClearance {
     Tube tube;
     std::uint32_t from, to;
   };
+  // Is every point of the axis at least min(most, slope * way to the end) from the surface?
+  bool keeps_away(const Tube& tube, double most, double slope) const;
   std::uint64_t cell_of(Vec3d point, int dx, int dy, int dz) const;
 
   const Mesh& mesh_;

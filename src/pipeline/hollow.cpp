@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
 #include "core/void_plan.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
+#include "pipeline/check_drained.h"
 #include "pipeline/check_output.h"
+#include "pipeline/drain.h"
 #include "pipeline/job_log.h"
 #include "pipeline/pack.h"
 #include "pipeline/prepare.h"
@@ -63,7 +66,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   const PackingRequest request = without_voids_that_cost(options.packing, options, log);
   report.limits = request.limits;
   report.process = request.process;
-  warn_of_trapped_material(options.packing.process.process, log);
+  if (!options.drainage) warn_of_trapped_material(options.packing.process.process, log);
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);
@@ -76,9 +79,13 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   report.outer_deviation = model.outer_deviation;
   report.volume_estimated = model.inspection.parts_overlap();
 
-  const Packing packing = pack_model(model, request, log);
+  Packing packing = pack_model(model, request, log);
   report.packing_statistics = packing.statistics;
   report.packing_device = packing.device;
+  if (options.drainage) {
+    log.stage("drain");
+    report.drainage = drain_packing(model, packing, *options.drainage, options.tolerance, log);
+  }
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
   const VoidPlan plan{packing.spheres};
@@ -90,7 +97,12 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   require_memory_for_voids(plan, report.tolerance_used, outer_triangles);
 
   log.stage("carve");
-  const Solid solid = carve(model, plan, {.tolerance = report.tolerance_used}, log);
+  std::optional<DrainedSolid> drained;
+  if (report.drainage)
+    drained = carve_within(model, packing, report.drainage->plan, report.tolerance_used,
+                           options.max_triangles, log);
+  const Solid solid =
+      drained ? as_solid(*drained) : carve(model, plan, {.tolerance = report.tolerance_used}, log);
   log.check_interrupted();
 
   if (prints_filament(options)) {
@@ -104,15 +116,27 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
 
   log.stage("check");
   const Mesh written = read_back(pending.file().path(), format, log);
-  report.output = check_output(written,
-                               {.solid = solid,
-                                .model = model.mesh,
-                                .inspection = model.inspection,
-                                .plan = plan,
-                                .limits = request.limits,
-                                .tolerance = report.tolerance_used,
-                                .surface = report.surface},
-                               log);
+  if (drained) {
+    report.output = check_drained(written,
+                                  {.solid = *drained,
+                                   .model = model.mesh,
+                                   .inspection = model.inspection,
+                                   .balls = packing.spheres,
+                                   .plan = report.drainage->plan,
+                                   .limits = request.limits,
+                                   .tolerance = report.tolerance_used},
+                                  *report.drainage, log);
+  } else {
+    report.output = check_output(written,
+                                 {.solid = solid,
+                                  .model = model.mesh,
+                                  .inspection = model.inspection,
+                                  .plan = plan,
+                                  .limits = request.limits,
+                                  .tolerance = report.tolerance_used,
+                                  .surface = report.surface},
+                                 log);
+  }
   report.output.path = options.output;
   report.output.file_bytes = std::filesystem::file_size(pending.file().path());
   report.balance = balance_of(model.mesh, report.output);

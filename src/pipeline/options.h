@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/device.h"
+#include "core/drainage.h"
 #include "core/packing.h"
 #include "mesh/load.h"
 #include "packing/adaptive.h"
@@ -63,6 +64,8 @@ struct HollowOptions {
   LoadOptions load;
   PackingRequest packing;
   SurfaceMode surface = SurfaceMode::automatic;
+  // If given, voids are joined by channels and opened by escape holes; else each is sealed.
+  std::optional<DrainageRequest> drainage;
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.
   double tolerance = 0.05;

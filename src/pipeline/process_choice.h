@@ -17,10 +17,19 @@ struct LimitOrigin {
   std::string source;  // for a default: who says so
 };
 
-// The process a job is for, and where each limit that it is done under came from.
+// Which way is up while a model is printed.
+struct PrintDirection {
+  Vec3d up{0, 0, 1};
+  std::string name = "+z";
+  std::string origin = "default";
+};
+
+// The process a job is for, and where each limit that it is done under came from. The diameters of channels
+// and escape holes are among them where voids drain.
 struct ProcessChoice {
   Process process;
   std::vector<LimitOrigin> origins;
+  PrintDirection direction = {};
 };
 
 // The limits that the origins name.
@@ -47,7 +56,7 @@ enum class ProcessCheck {
 // other or that this process cannot print.
 ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>& given, ProcessCheck check);
 
-// What the user should know about closed voids in this process, if anything.
+// What the user should know about sealed voids in this process, if anything.
 void warn_of_trapped_material(const Process& process, Monitor& monitor);
 
 // Every built-in process with its figures and their sources, for people.

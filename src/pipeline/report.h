@@ -10,6 +10,7 @@
 #include "core/packing.h"
 #include "mesh/inspect.h"
 #include "packing/verify.h"
+#include "pipeline/drainage_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
 
@@ -91,6 +92,8 @@ struct HollowReport {
   std::optional<std::size_t> max_triangles;
 
   OutputFacts output;
+  // Of voids that drain; absent where each is sealed.
+  std::optional<DrainageFacts> drainage;
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;
 
