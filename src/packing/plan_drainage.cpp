@@ -34,7 +34,7 @@ constexpr std::array<double, 2> kSharesOfHeight{0.3, 1};
 
 // A network is opened where channels reach this share of its volume, or the most of so many attempts.
 constexpr double kEnoughReached = 0.8;
-constexpr int kMostAttempts = 8;
+constexpr int kMostAttempts = 16;
 
 // Of the voids' volume: more holes and channels are made while more than this stays after both orientations,
 // at most so many holes, each for a pool of at least that size.
@@ -50,11 +50,6 @@ struct Attachment {
 };
 constexpr std::array<Attachment, 7> kAttachments{
     {{0.7, -0.7}, {0.35, -0.35}, {0, 0}, {0, -0.7}, {0.7, 0}, {-0.35, -0.7}, {-0.7, -0.7}}};
-
-// A void at the end of a branch of which more than this share stays full may be left out for that; the lesser
-// shares where the greater are not enough.
-constexpr std::array<double, 3> kPoolsOfVoid{0.15, 0.05, 0.01};
-constexpr int kMostRounds = 20;
 
 // More channels than the tree's have to reduce what stays to this share of it.
 constexpr double kLeastGain = 0.7;
@@ -142,7 +137,8 @@ class Planner {
   void open_pools(double whole_volume);
   void empty_pools();
   TrappedPools pools_now() const { return compacted().plan.pools; }
-  void leave_out_pools(double share_of_void);
+  void leave_out_pools();
+  void leave_out_branch(std::uint32_t root, const SpillHeights& spills);
   PlannedDrainage compacted() const;
 
   std::span<const Sphere> spheres_;
@@ -530,36 +526,50 @@ void Planner::empty_pools() {
   if (pools_now().after_both > kLeastGain * before) plan_.channels.resize(tree_size);
 }
 
-// Voids at the end of a branch of which more than a share would stay full are not made, the worst first,
-// until little stays.
-void Planner::leave_out_pools(double share_of_void) {
-  for (int round = 0; round < kMostRounds; ++round) {
+// Branches of which the largest share stays full are not made, until little stays. A branch is a void with all
+// that drains through it; those with an escape hole stay.
+void Planner::leave_out_pools() {
+  for (std::size_t round = 0; round < spheres_.size(); ++round) {
     const TrappedPools pools = pools_now();
-    double surplus = pools.after_both - kPoolsAimedAt * pools.total;
-    if (surplus <= 0) return;
+    if (pools.after_both <= kPoolsAimedAt * pools.total) return;
     const SpillHeights spills = spill_heights(spheres_, plan_, request_.up);
-    std::vector<int> degrees(spheres_.size(), 0);
-    for (const Channel& c : plan_.channels) ++degrees[c.from], ++degrees[c.to];
-    for (const EscapeHole& hole : plan_.holes) degrees[hole.from] += 2;
-    std::vector<std::pair<double, std::uint32_t>> ends;  // share that stays, void
+    std::vector<double> whole(spheres_.size(), 0), full(spheres_.size(), 0);
     for (const std::uint32_t i : spills.order) {
-      if (degrees[i] != 1) continue;
-      const double share = volume_below(spheres_[i], request_.up, spills.height[i]) / volume_of({i});
-      if (share > share_of_void) ends.push_back({-share, i});
+      whole[i] = volume_of({i});
+      full[i] = volume_below(spheres_[i], request_.up, spills.height[i]);
     }
-    if (ends.empty()) return;
-    std::sort(ends.begin(), ends.end());
-    for (const auto& [share, i] : ends) {
-      if (surplus <= 0) break;
-      surplus += share * volume_of({i});
-      network_of_[i] = kOutside;
-      ++dropped_.full;
-      dropped_.volume += volume_of({i});
+    std::vector<bool> has_hole(spheres_.size(), false);
+    for (const EscapeHole& hole : plan_.holes) has_hole[hole.from] = true;
+    std::uint32_t worst = kOutside;
+    double most = kPoolsAimedAt;
+    for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
+      const std::uint32_t i = *at, next = spills.towards[*at];
+      if (!has_hole[i] && full[i] > most * whole[i]) {
+        most = full[i] / whole[i];
+        worst = i;
+      }
+      if (next == kOutside) continue;
+      whole[next] += whole[i];
+      full[next] += full[i];
+      has_hole[next] = has_hole[next] || has_hole[i];
     }
-    std::erase_if(plan_.channels, [&](const Channel& c) {
-      return network_of_[c.from] == kOutside || network_of_[c.to] == kOutside;
-    });
+    if (worst == kOutside) return;
+    leave_out_branch(worst, spills);
   }
+}
+
+void Planner::leave_out_branch(std::uint32_t root, const SpillHeights& spills) {
+  std::vector<bool> is_in_branch(spheres_.size(), false);
+  for (const std::uint32_t i : spills.order) {
+    const std::uint32_t next = spills.towards[i];
+    if (i != root && (next == kOutside || !is_in_branch[next])) continue;
+    is_in_branch[i] = true;
+    network_of_[i] = kOutside;
+    ++dropped_.full;
+    dropped_.volume += volume_of({i});
+  }
+  std::erase_if(plan_.channels,
+                [&](const Channel& c) { return is_in_branch[c.from] || is_in_branch[c.to]; });
 }
 
 PlannedDrainage Planner::run() {
@@ -583,7 +593,7 @@ PlannedDrainage Planner::run() {
   }
   if (request_.escape_holes.size() < 2) open_pools(whole);
   if (pools_now().after_both > kPoolsAimedAt * whole) empty_pools();
-  for (const double share : kPoolsOfVoid) leave_out_pools(share);
+  leave_out_pools();
   return compacted();
 }
 

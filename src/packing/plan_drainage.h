@@ -19,7 +19,7 @@ struct UndrainedVoids {
   std::size_t unreached = 0;  // no channel keeps wall and gap on its way there
   std::size_t unopened = 0;   // in a network for which no place for two escape holes was found, or too
                               // small a one to be worth them
-  std::size_t full = 0;       // at the end of a branch, where most of them would stay full
+  std::size_t full = 0;       // on a branch of which too much would stay full
   double volume = 0;          // of all these, mm3
   std::size_t count() const { return narrow + unreached + unopened + full; }
 };
@@ -50,7 +50,7 @@ struct DrainableModel {
 // flood in order of height (pools.h) makes the spanning tree: each void is joined so that its liquid has to
 // rise least to run out. While more than a hundredth of the voids' volume stays after both orientations, the
 // largest pools get holes of their own (unless both holes were asked for), then channels beside the tree, and
-// at last voids at the end of a branch that would stay full are left out.
+// at last branches of which too much would stay full are left out.
 //
 // Deterministic. Throws UsageError if no void is wide enough, if an escape hole was asked for away from the
 // surface or where no tube reaches a void; NothingToRemoveError if no network can be opened;
