@@ -133,6 +133,7 @@ class Planner {
   void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) const;
   std::vector<Candidate> flood(Vec3d up, const std::function<void(const Channel&)>& join);
   void place(const Channel& channel);
+  void take_back_channels();
   std::vector<std::pair<double, Members>> upright_pools() const;
   void open_pools(double whole_volume);
   void empty_pools();
@@ -346,7 +347,9 @@ bool Planner::open_network(const Members& members, std::uint32_t network) {
     const std::size_t before = plan_.holes.size();
     if (!is_asked_for_below && !open(candidates, -request_.up, network)) break;
     if (holes_of(network) < 2) open(candidates, request_.up, network);
-    const std::vector<Candidate> ways = flood(request_.up, [](const Channel&) {});
+    const std::vector<Candidate> ways =
+        flood(request_.up, [this](const Channel& channel) { place(channel); });
+    take_back_channels();
     Members reached;
     for (const std::uint32_t i : members) {
       if (ways[i].to != kOutside) reached.push_back(i);
@@ -466,6 +469,14 @@ void Planner::place(const Channel& channel) {
   plan_.channels.push_back(channel);
   channels_of_[channel.from].push_back(index);
   channels_of_[channel.to].push_back(index);
+}
+
+void Planner::take_back_channels() {
+  for (; !plan_.channels.empty(); plan_.channels.pop_back()) {
+    channels_of_[plan_.channels.back().from].pop_back();
+    channels_of_[plan_.channels.back().to].pop_back();
+    clearance_.take_back_last();
+  }
 }
 
 // The members of each pool in print orientation, and its volume, the largest first.
