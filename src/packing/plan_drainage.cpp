@@ -27,9 +27,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // No channel is longer than the largest void's radius, or this many channel diameters.
 constexpr double kLongestInDiameters = 4;
 
-// Places that are tried for one escape hole before it is given up: first in this share of the network's
-// height, then anywhere.
-constexpr std::size_t kMostPlaces = 400;
+// Sound places where the surface turned out not to be cut well, for one escape hole, before it is given up:
+// first in this share of the network's height, then anywhere.
+constexpr int kMostCuts = 100;
 constexpr std::array<double, 2> kSharesOfHeight{0.3, 1};
 
 // A network is opened where channels reach this share of its volume, or the most of so many attempts.
@@ -284,10 +284,12 @@ std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) 
 }
 
 bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
-  if (ranked.size() > kMostPlaces) ranked.resize(kMostPlaces);
+  int cuts = 0;
   for (EscapeHole& hole : ranked) {
     monitor_.check_interrupted();
-    if (!places_.is_sound(hole) || !can_open_(hole.tube, spheres_[hole.from])) continue;
+    if (!places_.is_sound(hole)) continue;
+    if (++cuts > kMostCuts) return false;
+    if (!can_open_(hole.tube, spheres_[hole.from])) continue;
     hole.network = network;
     clearance_.place(hole.tube, hole.from, hole.from);
     plan_.holes.push_back(hole);
