@@ -62,6 +62,27 @@ CuttingPrism prism_of(const Tube& tube, const Opening& opening) {
   return prism;
 }
 
+// Without the elements at these places, ascending.
+template <typename T>
+void remove_at(std::vector<T>& values, std::span<const std::uint32_t> places) {
+  std::size_t kept = 0, next = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (next < places.size() && places[next] == i) {
+      ++next;
+    } else {
+      values[kept++] = values[i];
+    }
+  }
+  values.resize(kept);
+}
+
+// What a cut leaves of a surface; its own triangles come last.
+void apply(const SurfaceCut& cut, Mesh& mesh) {
+  remove_at(mesh.triangles, cut.removed);
+  mesh.triangles.insert(mesh.triangles.end(), cut.surface.begin(), cut.surface.end());
+  mesh.positions.insert(mesh.positions.end(), cut.new_positions.begin(), cut.new_positions.end());
+}
+
 // A ball with its openings, and where its vertices begin in the result.
 struct Part {
   std::vector<Opening> openings;
@@ -167,23 +188,13 @@ class DrainedCarver {
                                std::to_string(hole.tube.end.x) + ", " + std::to_string(hole.tube.end.y) +
                                ", " + std::to_string(hole.tube.end.z) + ") mm",
                            "ask for other places with --escape-hole");
-      std::size_t kept = 0;
-      std::size_t next = 0;
-      for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (next < cut->removed.size() && cut->removed[next] == t) {
-          ++next;
-          if (origins[t] != kNew) solid_.cut_triangles.push_back(origins[t]);
-          continue;
-        }
-        mesh.triangles[kept] = mesh.triangles[t];
-        origins[kept++] = origins[t];
+      for (const std::uint32_t t : cut->removed) {
+        if (origins[t] != kNew) solid_.cut_triangles.push_back(origins[t]);
       }
-      mesh.triangles.resize(kept);
-      origins.resize(kept);
-      mesh.triangles.insert(mesh.triangles.end(), cut->surface.begin(), cut->surface.end());
+      remove_at(origins, cut->removed);
+      apply(*cut, mesh);
       origins.resize(mesh.triangles.size(), kNew);
-      hole_sides_.push_back({cut->sides, mesh.positions.size() + cut->new_positions.size()});
-      mesh.positions.insert(mesh.positions.end(), cut->new_positions.begin(), cut->new_positions.end());
+      hole_sides_.push_back({cut->sides, mesh.positions.size()});
     }
     std::sort(solid_.cut_triangles.begin(), solid_.cut_triangles.end());
     solid_.kept_triangle_count = outer.triangles.size() - solid_.cut_triangles.size();
@@ -259,9 +270,25 @@ class DrainedCarver {
 
 }  // namespace
 
-bool can_cut(const Mesh& outer, const Tube& tube, const Sphere& ball, Vec3d up, double tolerance) {
-  const Opening opening = opening_of(tube, TubeEnd::start, ball, up, tolerance);
-  return cut_surface(outer, prism_of(tube, opening)).has_value();
+bool can_cut(const Mesh& outer, const WayOut& way, std::span<const WayOut> others, Vec3d up,
+             double tolerance) {
+  const auto prism = [&](const WayOut& out) {
+    return prism_of(out.tube, opening_of(out.tube, TubeEnd::start, out.ball, up, tolerance));
+  };
+  const CuttingPrism own = prism(way);
+  const std::vector<std::uint32_t> near = triangles_near(outer, own);
+  const bool shares_triangles = std::any_of(others.begin(), others.end(), [&](const WayOut& other) {
+    const std::vector<std::uint32_t> theirs = triangles_near(outer, prism(other));
+    return std::find_first_of(near.begin(), near.end(), theirs.begin(), theirs.end()) != near.end();
+  });
+  if (!shares_triangles) return cut_surface(outer, own).has_value();
+  Mesh mesh = outer;
+  for (const WayOut& other : others) {
+    const auto cut = cut_surface(mesh, prism(other));
+    if (!cut) return false;
+    apply(*cut, mesh);
+  }
+  return cut_surface(mesh, own).has_value();
 }
 
 DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,

@@ -13,8 +13,15 @@
 
 namespace aerate {
 
-// Can the surface be cut where this tube leaves the model? See `cut_surface`.
-bool can_cut(const Mesh& outer, const Tube& tube, const Sphere& ball, Vec3d up, double tolerance);
+// A tube that leaves a model, and the ball that it comes out of.
+struct WayOut {
+  Tube tube;
+  Sphere ball;
+};
+
+// Can the surface be cut where a tube leaves the model, after it has been cut for others? See `cut_surface`.
+bool can_cut(const Mesh& outer, const WayOut& way, std::span<const WayOut> others, Vec3d up,
+             double tolerance);
 
 // Carves balls, the channels between them and their escape holes.
 //

@@ -46,28 +46,6 @@ bool has_area(Vec3f a, Vec3f b, Vec3f c) {
   return length_squared(cross(to_double(b) - to_double(a), to_double(c) - to_double(a))) > 0;
 }
 
-// The triangles that the prism may meet.
-std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const CuttingPrism& prism) {
-  const Segment axis{prism.start, prism.start + prism.axis * prism.length};
-  const double reach = prism.radius + kMargin;
-  const Vec3d margin{reach, reach, reach};
-  const Vec3d lower = min_of(axis.start, axis.end) - margin;
-  const Vec3d upper = max_of(axis.start, axis.end) + margin;
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& t = mesh.triangles[i];
-    const Vec3f a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-    const Vec3d least = to_double(min_of(a, min_of(b, c)));
-    const Vec3d most = to_double(max_of(a, max_of(b, c)));
-    if (least.x > upper.x || least.y > upper.y || least.z > upper.z || most.x < lower.x || most.y < lower.y ||
-        most.z < lower.z) {
-      continue;
-    }
-    if (distance_to_facet(axis, {a, b, c}) < reach) near.push_back(i);
-  }
-  return near;
-}
-
 // The triangles as a mesh of its own, with the vertices that they have in the whole one.
 struct Patch {
   SurfaceMesh surface;
@@ -282,6 +260,27 @@ class Cut {
 };
 
 }  // namespace
+
+std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const CuttingPrism& prism) {
+  const Segment axis{prism.start, prism.start + prism.axis * prism.length};
+  const double reach = prism.radius + kMargin;
+  const Vec3d margin{reach, reach, reach};
+  const Vec3d lower = min_of(axis.start, axis.end) - margin;
+  const Vec3d upper = max_of(axis.start, axis.end) + margin;
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    const Vec3f a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+    const Vec3d least = to_double(min_of(a, min_of(b, c)));
+    const Vec3d most = to_double(max_of(a, max_of(b, c)));
+    if (least.x > upper.x || least.y > upper.y || least.z > upper.z || most.x < lower.x || most.y < lower.y ||
+        most.z < lower.z) {
+      continue;
+    }
+    if (distance_to_facet(axis, {a, b, c}) < reach) near.push_back(i);
+  }
+  return near;
+}
 
 std::optional<SurfaceCut> cut_surface(const Mesh& mesh, const CuttingPrism& prism) {
   return Cut(mesh, prism).make();

@@ -26,6 +26,9 @@ struct SurfaceCut {
   std::vector<Triangle> sides;         // the prism from its ring to the surface, facing the axis
 };
 
+// The triangles that a prism may meet, ascending.
+std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const CuttingPrism& prism);
+
 // Cuts a surface by a prism: CGAL's corefinement of the triangles that it meets. Every other triangle stays
 // as it is; it does not matter what flaws there are elsewhere. nullopt if the prism does not leave the solid
 // through one piece of 2-manifold surface that faces its end all over, or if the new triangles would not be

@@ -12,18 +12,18 @@ DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config) : 
       "--drain,!--no-drain", drain_,
       "Join voids by channels and open them by escape holes, or leave them sealed (default of the process: "
       "sla, sls and metal drain, fdm does not)");
-  channel_option_ =
+  channel_option_ = command
+                        .add_option("--channel-diameter", channel_,
+                                    "Diameter of the channels that join voids (default of the process)")
+                        ->check(number_between({}, kLongest, "mm"))
+                        ->type_name("MM");
+  hole_option_ =
       command
-          .add_option("--channel-diameter", channel_,
-                      "Diameter of the channels that join voids (default of the process)")
+          .add_option("--hole-diameter", hole_,
+                      "Diameter of the escape holes, no less than that of channels (default of the "
+                      "process)")
           ->check(number_between({}, kLongest, "mm"))
           ->type_name("MM");
-  hole_option_ = command
-                     .add_option("--hole-diameter", hole_,
-                                 "Diameter of the escape holes, no less than that of channels (default of the "
-                                 "process)")
-                     ->check(number_between({}, kLongest, "mm"))
-                     ->type_name("MM");
   const auto is_place = [](const std::string& text) {
     return parse_point(text) ? std::string()
                              : fmt::format("'{}' is no place: give three numbers x,y,z", text);
@@ -45,11 +45,11 @@ bool DrainageOptions::is_wanted(const Process& process) const {
 
 double DrainageOptions::diameter(ProcessChoice& choice, Limit limit, const CLI::Option& option,
                                  double given) const {
-  LimitOrigin chosen{.limit = limit,
-                     .value = given,
-                     .origin = option.count() > 0 ? config_.origin_of(option)
-                                                  : "default of " + choice.process.name,
-                     .source = {}};
+  LimitOrigin chosen{
+      .limit = limit,
+      .value = given,
+      .origin = option.count() > 0 ? config_.origin_of(option) : "default of " + choice.process.name,
+      .source = {}};
   if (option.count() == 0) {
     const auto& figure = choice.process[limit];
     if (!figure) {

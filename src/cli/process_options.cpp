@@ -45,7 +45,8 @@ ProcessOptions::ProcessOptions(CLI::App& command, const ConfigFile& config)
   const auto is_direction = [](const std::string& text) {
     return parse_direction(text)
                ? std::string()
-               : fmt::format("'{}' is no direction: give +x, -x, +y, -y, +z, -z or three numbers x,y,z", text);
+               : fmt::format("'{}' is no direction: give +x, -x, +y, -y, +z, -z or three numbers x,y,z",
+                             text);
   };
   up_option_ = command
                    .add_option("--up", up_,

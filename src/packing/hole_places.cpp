@@ -25,8 +25,8 @@ constexpr double kLongestInWalls = 3;
 constexpr std::size_t kMostBalls = 48;
 constexpr int kDirections = 64;
 
-// A ball is roomy if the distance of its centre from the hole's rim is at least this share of that between the
-// axes of the hole and of a channel: the two then open into it at 113 degrees from each other or less.
+// A ball is roomy if the distance of its centre from the hole's rim is at least this share of that between
+// the axes of the hole and of a channel: the two then open into it at 113 degrees from each other or less.
 constexpr double kRoomyShare = 0.6;
 
 // Weights of what makes a place good, in heights of the network: a tenth of it is given for a place that does
@@ -70,7 +70,8 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
   return kLongestInDiameters * 2 * request.hole_radius + kLongestInWalls * limits.wall;
 }
 
-HolePlaces::HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
+HolePlaces::HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh,
+                       std::span<const Sphere> spheres, const PackingLimits& limits,
                        const DrainageRequest& request, const TubeClearance& clearance)
     : spheres_(spheres),
       limits_(limits),

@@ -19,8 +19,8 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
 class HolePlaces {
  public:
   // `outward_shells`: see DrainableModel.
-  HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
-             const DrainageRequest& request, const TubeClearance& clearance);
+  HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh, std::span<const Sphere> spheres,
+             const PackingLimits& limits, const DrainageRequest& request, const TubeClearance& clearance);
 
   // Tubes that lead out of some of the balls, the best first. `down` is the way liquid runs: the direction of
   // gravity as printed for the low hole, the opposite for the high one. A place is the better, the lower it

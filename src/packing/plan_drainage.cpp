@@ -93,7 +93,8 @@ class Planner {
         can_open_(can_open),
         monitor_(monitor),
         longest_(std::max(largest_radius(), kLongestInDiameters * 2 * request.channel_radius)),
-        clearance_(model.mesh, spheres_, packing.limits, std::max(longest_, longest_hole(request, packing.limits)),
+        clearance_(model.mesh, spheres_, packing.limits,
+                   std::max(longest_, longest_hole(request, packing.limits)),
                    std::max(request.channel_radius, request.hole_radius)),
         places_(model.outward_shells, model.mesh, spheres_, packing.limits, request, clearance_) {
     plan_.up = request.up;
@@ -289,7 +290,7 @@ bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
     monitor_.check_interrupted();
     if (!places_.is_sound(hole)) continue;
     if (++cuts > kMostCuts) return false;
-    if (!can_open_(hole.tube, spheres_[hole.from])) continue;
+    if (!can_open_(hole, plan_.holes)) continue;
     hole.network = network;
     clearance_.place(hole.tube, hole.from, hole.from);
     plan_.holes.push_back(hole);
@@ -300,9 +301,8 @@ bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
 
 // Opens some of the voids where liquid that runs `down` leaves them.
 bool Planner::open(const Members& members, Vec3d down, std::uint32_t network) {
-  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(), [&](double share) {
-    return open_one(places_.ranked(members, down, share), network);
-  });
+  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(),
+                     [&](double share) { return open_one(places_.ranked(members, down, share), network); });
 }
 
 std::ptrdiff_t Planner::holes_of(std::uint32_t network) const {
@@ -338,8 +338,8 @@ void Planner::leave_out(std::uint32_t network) {
   std::erase_if(plan_.channels, [&](const Channel& c) { return network_of_[c.from] == kOutside; });
 }
 
-// Opens a network below and above, before channels take the room for it: at balls from which most of it can be
-// reached. False if there is no place below.
+// Opens a network below and above, before channels take the room for it: at balls from which most of it can
+// be reached. False if there is no place below.
 bool Planner::open_network(const Members& members, std::uint32_t network) {
   const bool is_asked_for_below = has_low_hole(members, network);
   Members candidates = members;
@@ -364,8 +364,7 @@ bool Planner::open_network(const Members& members, std::uint32_t network) {
     std::vector<std::uint32_t> useless;
     for (std::size_t i = before; i < plan_.holes.size(); ++i) {
       const bool is_below = i == before && !is_asked_for_below;
-      if (is_below ? volume < kEnoughReached * volume_of(members)
-                   : ways[plan_.holes[i].from].to == kOutside)
+      if (is_below ? volume < kEnoughReached * volume_of(members) : ways[plan_.holes[i].from].to == kOutside)
         useless.push_back(plan_.holes[i].from);
     }
     while (plan_.holes.size() > before) {
@@ -539,8 +538,8 @@ void Planner::empty_pools() {
   if (pools_now().after_both > kLeastGain * before) plan_.channels.resize(tree_size);
 }
 
-// Branches of which the largest share stays full are not made, until little stays. A branch is a void with all
-// that drains through it; those with an escape hole stay.
+// Branches of which the largest share stays full are not made, until little stays. A branch is a void with
+// all that drains through it; those with an escape hole stay.
 void Planner::leave_out_pools() {
   for (std::size_t round = 0; round < spheres_.size(); ++round) {
     const TrappedPools pools = pools_now();
@@ -581,8 +580,7 @@ void Planner::leave_out_branch(std::uint32_t root, const SpillHeights& spills) {
     ++dropped_.full;
     dropped_.volume += volume_of({i});
   }
-  std::erase_if(plan_.channels,
-                [&](const Channel& c) { return is_in_branch[c.from] || is_in_branch[c.to]; });
+  std::erase_if(plan_.channels, [&](const Channel& c) { return is_in_branch[c.from] || is_in_branch[c.to]; });
 }
 
 PlannedDrainage Planner::run() {

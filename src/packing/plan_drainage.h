@@ -33,8 +33,8 @@ struct PlannedDrainage {
 // A network of its own is opened if it holds at least this share of the voids' volume: its two holes show.
 inline constexpr double kLeastNetworkShare = 0.05;
 
-// Can the surface be cut along this tube, which leaves that ball?
-using CanOpen = std::function<bool(const Tube& tube, const Sphere& ball)>;
+// Can the surface be cut for this hole, after it has been cut for the others? Their `from` count the packing.
+using CanOpen = std::function<bool(const EscapeHole& hole, std::span<const EscapeHole> others)>;
 
 // A closed model. Holes lead out of its outward shells: the space inside an inward shell is sealed itself.
 struct DrainableModel {

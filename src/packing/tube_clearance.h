@@ -13,8 +13,8 @@
 
 namespace aerate {
 
-// Distance that the axes of two tubes have to keep where both meet one ball, so that an edge of one's ring does
-// not cut the other.
+// Distance that the axes of two tubes have to keep where both meet one ball, so that an edge of one's ring
+// does not cut the other.
 double tube_spacing(double radius, double other_radius);
 
 // Where tubes may run: answers whether a tube keeps the wall from the model's surface, and the gap from voids
@@ -37,9 +37,9 @@ class TubeClearance {
   // the axis is clear if its middle is clear by half its length.
   bool keeps_wall(const Tube& tube) const;
 
-  // The same for a tube that comes out of the surface at its end. There the axis comes nearer, but no point of
-  // it than `slope` (the least sine of its angle with the surface) times what is left of the way. Exact but
-  // for `kWallSlack` as before, and for the last of the way that is shorter than that.
+  // The same for a tube that comes out of the surface at its end. There the axis comes nearer, but no point
+  // of it than `slope` (the least sine of its angle with the surface) times what is left of the way. Exact
+  // but for `kWallSlack` as before, and for the last of the way that is shorter than that.
   bool keeps_wall_on_way_out(const Tube& tube, double slope) const;
 
   // Do balls other than those two keep the gap from the tube, which starts at ball `from`?

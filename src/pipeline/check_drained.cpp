@@ -119,8 +119,8 @@ EdgeCounts count_edges(const Mesh& mesh, const EdgeUses& uses) {
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) is_used[v] = true;
   }
-  counts.euler = std::count(is_used.begin(), is_used.end(), true) +
-                 static_cast<std::int64_t>(mesh.triangles.size());
+  counts.euler =
+      std::count(is_used.begin(), is_used.end(), true) + static_cast<std::int64_t>(mesh.triangles.size());
   for (std::size_t low = 0; low < uses.row_count(); ++low) {
     uses.for_each_edge(low, [&](std::uint32_t from, std::uint32_t, std::span<const EdgeUse> edge) {
       const EdgeBalance balance = balance_of(mesh, from, edge);
@@ -144,8 +144,9 @@ void require_sound_edges(const Mesh& read_back, const EdgeUses& uses, const Expe
   const auto tubes = static_cast<std::int64_t>(expected.plan.channels.size() + expected.plan.holes.size());
   const std::int64_t planned = model.euler + 2 * static_cast<std::int64_t>(expected.balls.size()) - 2 * tubes;
   if (counts.euler != planned)
-    fail_check("its Euler characteristic is {} instead of {}: voids, channels and holes do not join as planned",
-               counts.euler, planned);
+    fail_check(
+        "its Euler characteristic is {} instead of {}: voids, channels and holes do not join as planned",
+        counts.euler, planned);
 }
 
 // Shells with inner surface that are inward, so that nothing joins them to the outside; and holes that open
@@ -175,8 +176,9 @@ void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
     const SelfIntersections found = find_self_intersections(part);
     if (found.pair_count == 0) continue;
     const Vec3d place = found.places.front();
-    fail_check("{} pairs of triangles intersect at escape hole {}, the first near ({:.3f}, {:.3f}, {:.3f}) mm",
-               found.pair_count, i, place.x, place.y, place.z);
+    fail_check(
+        "{} pairs of triangles intersect at escape hole {}, the first near ({:.3f}, {:.3f}, {:.3f}) mm",
+        found.pair_count, i, place.x, place.y, place.z);
   }
 }
 
@@ -188,8 +190,7 @@ double channel_wall(const Mesh& model, const DrainagePlan& plan) {
     const Vec3d along = channel.tube.end - channel.tube.start;
     const auto steps = static_cast<std::size_t>(std::ceil(length(along) / kSpacing)) + 1;
     for (std::size_t i = 0; i <= steps; ++i) {
-      points.push_back(channel.tube.start +
-                       along * (static_cast<double>(i) / static_cast<double>(steps)));
+      points.push_back(channel.tube.start + along * (static_cast<double>(i) / static_cast<double>(steps)));
       radii.push_back(channel.tube.radius);
     }
   }

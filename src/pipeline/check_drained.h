@@ -33,8 +33,8 @@ bool is_crossed_near(const Mesh& model, const Tube& tube);
 
 // Checks and measures a mesh that was read back from disk, its vertices welded:
 //   - every triangle is the one that was written, coordinate for coordinate; the first ones are the model's,
-//     in their order, less those that were cut, each of which an escape hole meets; what is left of these lies
-//     in the model's surface;
+//     in their order, less those that were cut, each of which an escape hole meets; what is left of these
+//     lies in the model's surface;
 //   - each void, channel and hole is where it was planned (check_drained_parts.h);
 //   - wall and gap hold round the voids and the channels;
 //   - it is closed, without misoriented edges, with no more non-manifold edges than the model, and its Euler

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,8 +50,12 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
 DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const DrainageRequest& request,
                             double tolerance, Monitor& monitor) {
   const std::vector<Triangle> outward = outward_shells(model.mesh, model.inspection);
-  const auto can_open = [&](const Tube& tube, const Sphere& ball) {
-    return can_cut(model.mesh, tube, ball, request.up, tolerance) && !is_crossed_near(model.mesh, tube);
+  const auto way_of = [&](const EscapeHole& hole) { return WayOut{hole.tube, packing.spheres[hole.from]}; };
+  const auto can_open = [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
+    std::vector<WayOut> before;
+    for (const EscapeHole& other : others) before.push_back(way_of(other));
+    return can_cut(model.mesh, way_of(hole), before, request.up, tolerance) &&
+           !is_crossed_near(model.mesh, hole.tube);
   };
   PlannedDrainage planned = plan_drainage({model.mesh, outward}, packing, request, can_open, monitor);
   const std::size_t packed = packing.spheres.size();
@@ -65,14 +70,13 @@ DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const 
 DrainedSolid carve_within(const PreparedModel& model, const Packing& packing, const DrainagePlan& plan,
                           double& tolerance, std::optional<std::size_t> max_triangles, Monitor& monitor) {
   for (int i = 0; i < kMostTries; ++i) {
-    DrainedSolid solid =
-        carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
+    DrainedSolid solid = carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
     if (!max_triangles || solid.mesh.triangles.size() <= *max_triangles) return solid;
     tolerance *= kLooser;
   }
-  throw UsageError(fmt::format("--max-triangles {}: drained voids take more, however coarse they are",
-                               *max_triangles),
-                   "allow more triangles, or give a larger --min-radius for fewer voids");
+  throw UsageError(
+      fmt::format("--max-triangles {}: drained voids take more, however coarse they are", *max_triangles),
+      "allow more triangles, or give a larger --min-radius for fewer voids");
 }
 
 Solid as_solid(const DrainedSolid& drained) {

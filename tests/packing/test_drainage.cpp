@@ -130,7 +130,8 @@ TEST(TubeClearances, ATubeThatComesOutTooObliquelyIsRefused) {
   EXPECT_FALSE(clearance.keeps_wall_on_way_out(towards(29), 0.5));
   EXPECT_FALSE(clearance.keeps_wall(towards(90)));  // a channel may not come out at all
   // A place between samples: a thin slot that comes within half the wall of the tube.
-  const Mesh slotted = test::join(box, test::turned_inside_out(test::make_box({22, 19.99F, 6}, {30, 20.01F, 6.02F})));
+  const Mesh slotted =
+      test::join(box, test::turned_inside_out(test::make_box({22, 19.99F, 6}, {30, 20.01F, 6.02F})));
   const TubeClearance beside(slotted, spheres, limits, 20, 2);
   EXPECT_FALSE(beside.keeps_wall_on_way_out(towards(90), 0.5));
 }
@@ -144,8 +145,9 @@ class PlanDrainage : public testing::Test {
   }
   PlannedDrainage plan(const std::vector<Triangle>& outward) const {
     Monitor silent;
-    return plan_drainage({mesh_, outward}, packing_, request_,
-                         [](const Tube&, const Sphere&) { return true; }, silent);
+    return plan_drainage(
+        {mesh_, outward}, packing_, request_,
+        [](const EscapeHole&, std::span<const EscapeHole>) { return true; }, silent);
   }
   PlannedDrainage plan() const { return plan(mesh_.triangles); }
 
@@ -202,9 +204,9 @@ TEST_F(PlanDrainage, JoinsTheVoidsOfABlockAndOpensItLowAndHigh) {
   expect_sound(planned);
   EXPECT_GE(planned.kept.size(), packing_.spheres.size() * 8 / 10);
   EXPECT_EQ(planned.plan.channels.size(), planned.kept.size() - planned.plan.network_count);
-  const auto [low, high] =
-      std::minmax_element(planned.plan.holes.begin(), planned.plan.holes.end(),
-                          [](const EscapeHole& a, const EscapeHole& b) { return a.tube.end.z < b.tube.end.z; });
+  const auto [low, high] = std::minmax_element(
+      planned.plan.holes.begin(), planned.plan.holes.end(),
+      [](const EscapeHole& a, const EscapeHole& b) { return a.tube.end.z < b.tube.end.z; });
   ASSERT_GE(planned.plan.holes.size(), 2U);
   EXPECT_LT(low->tube.end.z, 10);
   EXPECT_GT(high->tube.end.z, 25);
@@ -272,8 +274,9 @@ TEST_F(PlanDrainage, WhatCannotBeIsRefusedWithWhatToDo) {
 TEST_F(PlanDrainage, WhereNoHoleCanBeCutNothingIsMade) {
   pack(test::make_box({0, 0, 0}, {50, 40, 40}));
   Monitor silent;
-  EXPECT_THROW(plan_drainage({mesh_, mesh_.triangles}, packing_, request_,
-                             [](const Tube&, const Sphere&) { return false; }, silent),
+  EXPECT_THROW(plan_drainage(
+                   {mesh_, mesh_.triangles}, packing_, request_,
+                   [](const EscapeHole&, std::span<const EscapeHole>) { return false; }, silent),
                NothingToRemoveError);
 }
 

@@ -31,9 +31,9 @@ TEST(SegmentDistance, KnownPlaces) {
   const Segment along_x{{0, 0, 0}, {2, 0, 0}};
   EXPECT_DOUBLE_EQ(distance_to_point(along_x, {1, 3, 4}), 5);
   EXPECT_DOUBLE_EQ(distance_to_point(along_x, {5, 4, 0}), 5);
-  EXPECT_DOUBLE_EQ(distance_between(along_x, {{1, -1, 3}, {1, 1, 3}}), 3);   // inside both
-  EXPECT_DOUBLE_EQ(distance_between(along_x, {{0, 2, 0}, {2, 2, 0}}), 2);    // parallel
-  EXPECT_DOUBLE_EQ(distance_between(along_x, {{5, 4, 0}, {9, 4, 0}}), 5);    // ends
+  EXPECT_DOUBLE_EQ(distance_between(along_x, {{1, -1, 3}, {1, 1, 3}}), 3);  // inside both
+  EXPECT_DOUBLE_EQ(distance_between(along_x, {{0, 2, 0}, {2, 2, 0}}), 2);   // parallel
+  EXPECT_DOUBLE_EQ(distance_between(along_x, {{5, 4, 0}, {9, 4, 0}}), 5);   // ends
   const kernels::Facet facet{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
   EXPECT_EQ(distance_to_facet({{1, 1, -1}, {1, 1, 1}}, facet), 0);           // through the inside
   EXPECT_DOUBLE_EQ(distance_to_facet({{1, 1, 2}, {1, 1, 5}}, facet), 2);     // above it
