@@ -1,7 +1,9 @@
 #include "pipeline/drain.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
@@ -65,6 +67,25 @@ DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const 
   DrainageFacts drainage{.request = request, .plan = std::move(planned.plan), .dropped = planned.dropped};
   tell_what_was_dropped(drainage, packed, monitor);
   return drainage;
+}
+
+void warn_of_ceilings(const Process& process, const Packing& packing, const DrainageRequest& request,
+                      Monitor& monitor) {
+  const auto& overhang = process[Limit::overhang];
+  const auto& bridge = process[Limit::bridge];
+  if (!overhang || !bridge) return;
+  // The part of a sphere's ceiling that leans further than the overhang is a cap of this share of its
+  // diameter.
+  const double share = std::cos(overhang->value * std::numbers::pi / 180);
+  double widest = request.channel_radius;
+  for (const Sphere& ball : packing.spheres) widest = std::max(widest, ball.radius);
+  if (2 * widest * share <= bridge->value) return;
+  monitor.notice(fmt::format(
+      "drained voids are spheres and round channels without roofs: ceilings of voids are up to {:.1f} mm "
+      "wide "
+      "where they lean further than {:g} degrees, those of channels {:.1f} mm, and {} bridges {:g} mm; check "
+      "that they print without support",
+      2 * widest * share, overhang->value, 2 * request.channel_radius * share, process.name, bridge->value));
 }
 
 DrainedSolid carve_within(const PreparedModel& model, const Packing& packing, const DrainagePlan& plan,

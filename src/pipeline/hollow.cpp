@@ -85,6 +85,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   if (options.drainage) {
     log.stage("drain");
     report.drainage = drain_packing(model, packing, *options.drainage, options.tolerance, log);
+    warn_of_ceilings(request.process.process, packing, *options.drainage, log);
   }
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 

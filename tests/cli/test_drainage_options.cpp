@@ -70,6 +70,9 @@ TEST(DrainageOptions, ProcessesThatTrapMaterialDrainByThemselves) {
     EXPECT_EQ(origin_of(report, "channel")["origin"], std::string("default of ") + process);
     EXPECT_EQ(origin_of(report, "escape-hole")["value"], report["drainage"]["hole_diameter_mm"]);
     EXPECT_GE(report["voids"]["count"].get<int>(), 30);
+    // Metal prints no wide ceilings, and drained voids have no roofs.
+    EXPECT_EQ(report["notices"].dump().find("without roofs") != std::string::npos,
+              std::string(process) == "metal");
   }
 }
 
