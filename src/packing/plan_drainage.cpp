@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <queue>
+#include <set>
 #include <string>
 #include <tuple>
 #include <unordered_map>
@@ -116,6 +117,7 @@ class Planner {
     }
   };
   using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
+  using UncutPlace = std::tuple<std::uint32_t, double, double, double>;
   static constexpr std::size_t kExisting = kAttachments.size();
 
   double largest_radius() const;
@@ -155,6 +157,7 @@ class Planner {
   std::vector<std::uint32_t> network_of_;
   std::vector<std::vector<std::uint32_t>> channels_of_;
   std::unordered_map<std::uint64_t, bool> free_;  // by pair and attachment
+  std::set<UncutPlace> uncut_;                    // where the surface is known not to be cut well
 };
 
 double Planner::largest_radius() const {
@@ -289,8 +292,14 @@ bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
   for (EscapeHole& hole : ranked) {
     monitor_.check_interrupted();
     if (!places_.is_sound(hole)) continue;
+    const Vec3d end = hole.tube.end;
+    const UncutPlace place{hole.from, end.x, end.y, end.z};
+    if (uncut_.contains(place)) continue;
     if (++cuts > kMostCuts) return false;
-    if (!can_open_(hole, plan_.holes)) continue;
+    if (!can_open_(hole, plan_.holes)) {
+      uncut_.insert(place);
+      continue;
+    }
     hole.network = network;
     clearance_.place(hole.tube, hole.from, hole.from);
     plan_.holes.push_back(hole);

@@ -190,7 +190,10 @@ class PlanDrainage : public testing::Test {
     }
     EXPECT_EQ(known.size(), spheres.size());
     EXPECT_EQ(planned.kept.size() + planned.dropped.count(), packing_.spheres.size());
-    EXPECT_LE(planned.plan.pools.after_both, 0.01 * planned.plan.pools.total + 1e-9);
+    // Where two holes were asked for, no more are made for what they leave.
+    if (request_.escape_holes.size() < 2) {
+      EXPECT_LE(planned.plan.pools.after_both, 0.01 * planned.plan.pools.total + 1e-9);
+    }
   }
 
   Mesh mesh_;
