@@ -44,6 +44,7 @@ kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits,
   input.parameters.min_radius = limits.min_radius;
   input.parameters.max_radius = limits.max_radius;
   input.parameters.max_count = options.max_count;
+  input.parameters.roof = limits.roof;
   if (options.target_density < 1) {
     input.parameters.max_volume = options.target_density * input.volume;
   }
