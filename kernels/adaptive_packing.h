@@ -408,14 +408,15 @@ class AdaptivePacker {
 // the hierarchy's, their boxes, and keys and order with a second copy to sort them.
 inline constexpr std::size_t kAdaptiveIndexBytes = 2 * sizeof(Facet) + sizeof(Box3f) + 12;
 
-// The whole job. The triangles go to the executor's memory once, and each ball comes back once.
+// The whole job. The triangles go to the executor's memory once, and each ball comes back once. Two
+// functions, so that an executor pays for voids with roofs only where it packs them.
 template <typename Executor>
 AdaptiveResult pack_adaptive(const Executor& executor, const AdaptiveInput& input) {
-  const Roof& roof = input.parameters.roof;
-  if (roof.shapes(input.parameters.max_radius)) {
-    return AdaptivePacker<Executor, RoofedShape>(executor, input, {roof}).pack();
-  }
   return AdaptivePacker<Executor, BallShape>(executor, input, {}).pack();
+}
+template <typename Executor>
+AdaptiveResult pack_adaptive_with_roofs(const Executor& executor, const AdaptiveInput& input) {
+  return AdaptivePacker<Executor, RoofedShape>(executor, input, {input.parameters.roof}).pack();
 }
 
 }  // namespace aerate::kernels

@@ -29,6 +29,8 @@ struct Roof {
   double widest_ball = std::numeric_limits<double>::infinity();
 
   AERATE_HD bool shapes(double radius) const { return radius > widest_ball; }
+  // Whether there is a rule at all.
+  AERATE_HD bool limits_ceilings() const { return widest_ball < std::numeric_limits<double>::infinity(); }
   AERATE_HD double flat_radius() const { return widest_ball * cosine; }
   // Height above the centre at which the cone leaves the ball.
   AERATE_HD double shoulder(double radius) const { return radius * sine; }
@@ -71,8 +73,15 @@ inline double lateral_radius(const Roof& roof, Vec3d centre, Vec3d p) {
   const double height = dot(offset, roof.up);
   const double aside = length(offset - roof.up * height);
   const bool beside_cone = height * roof.cosine > aside * roof.sine;
-  if (!(roof.widest_ball < std::numeric_limits<double>::infinity()) || !beside_cone) return length(offset);
+  if (!roof.limits_ceilings() || !beside_cone) return length(offset);
   return aside * roof.cosine + height * roof.sine;
+}
+
+// The same with the flat top: the least radius above `widest_ball` whose void round `centre` holds p.
+inline double least_radius_holding(const Roof& roof, Vec3d centre, Vec3d p) {
+  const double below_top =
+      dot(p - centre, roof.up) * roof.sine + roof.widest_ball * roof.cosine * roof.cosine;
+  return max_of(lateral_radius(roof, centre, p), below_top);
 }
 
 }  // namespace aerate

@@ -171,7 +171,7 @@ AERATE_HD inline double distance_to_facet(const Roof& roof, Vec3d centre, double
 // How deep inside the ball and cone of a void, both without end, a facet lies at its deepest.
 inline double lateral_depth(const Roof& roof, Vec3d centre, double radius, const Facet& facet) {
   const double distance = std::sqrt(distance_squared_to_facet(centre, facet));
-  if (!(roof.widest_ball < std::numeric_limits<double>::infinity())) return radius - distance;
+  if (!roof.limits_ceilings()) return radius - distance;
   const roof_detail::FixedSpine spine{roof.sine, std::numeric_limits<double>::infinity()};
   return radius - roof_detail::reach_facet(centre, roof.up, spine, facet, distance).value;
 }

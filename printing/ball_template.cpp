@@ -31,7 +31,7 @@ Vec3d normalised(Vec3d v) {
 }
 
 // nullopt if a triangle does not face outward.
-std::optional<BallTemplate> measured(StarTriangulation triangulation) {
+std::optional<BallTemplate> measured(const StarTriangulation& triangulation) {
   BallTemplate ball;
   double six_volumes = 0;
   for (std::uint32_t t = 0; t < triangulation.triangles().size(); ++t) {
@@ -87,7 +87,7 @@ std::optional<BallTemplate> project_onto_ball(const Mesh& surface, Vec3d centre)
   StarTriangulation triangulation(std::move(directions), surface.triangles);
   if (!triangulation.connect()) return std::nullopt;
   triangulation.flip_to_hull();
-  return measured(std::move(triangulation));
+  return measured(triangulation);
 }
 
 std::optional<BallTemplate> relax(BallTemplate ball) {
@@ -102,7 +102,7 @@ std::optional<BallTemplate> relax(BallTemplate ball) {
       triangulation.flip_to_hull();
     }
   }
-  return measured(std::move(triangulation));
+  return measured(triangulation);
 }
 
 BallLadder::BallLadder() : levels_(kLevelCount) {}

