@@ -230,6 +230,12 @@ void check_replaceable(const fs::path& target) {
   if (::access(target.c_str(), W_OK) != 0) throw cannot_write(target, errno);
 }
 
+void write_bytes(std::string_view bytes, const fs::path& path, const fs::path& shown) {
+  OutputFile output(path, shown, O_WRONLY | O_CREAT | O_TRUNC);
+  output.write(bytes);
+  output.close();
+}
+
 }  // namespace
 
 MeshFormat mesh_format_of(const fs::path& path) {
@@ -301,10 +307,12 @@ void write_mesh(const Mesh& mesh, const PendingFile& file, MeshFormat format) {
   write_mesh(mesh, file.path(), file.target(), format);
 }
 
+void write_bytes(std::string_view bytes, const fs::path& path) {
+  write_bytes(bytes, path, path);
+}
+
 void write_bytes(std::string_view bytes, const PendingFile& file) {
-  OutputFile output(file.path(), file.target(), O_WRONLY | O_CREAT | O_TRUNC);
-  output.write(bytes);
-  output.close();
+  write_bytes(bytes, file.path(), file.target());
 }
 
 }  // namespace aerate

@@ -39,7 +39,8 @@ class PendingFile {
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, MeshFormat format);
 void write_mesh(const Mesh& mesh, const PendingFile& file, MeshFormat format);
 
-// Fills a pending file with bytes that were made elsewhere. Throws as `write_mesh` does.
+// Fills a file with bytes that were made elsewhere. Throws as `write_mesh` does.
+void write_bytes(std::string_view bytes, const std::filesystem::path& path);
 void write_bytes(std::string_view bytes, const PendingFile& file);
 
 }  // namespace aerate

@@ -268,6 +268,16 @@ std::vector<ExtrusionMove> extrusion_moves(std::string_view gcode) {
   return moves;
 }
 
+bool extrudes(std::string_view gcode) {
+  bool found = false;
+  Interpreter machine;
+  for_each_line(gcode, [&](std::string_view line) {
+    found = machine.run(line);
+    return !found;
+  });
+  return found;
+}
+
 std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
                                          const std::vector<ExtrusionMove>& b) {
   constexpr double kRounding = 0.01;  // mm; slicers write three decimals

@@ -48,6 +48,9 @@ struct ExtrusionMove {
 // Moves of G0 to G3 that feed filament while moving; absolute and relative coordinates, G92. O(bytes).
 std::vector<ExtrusionMove> extrusion_moves(std::string_view gcode);
 
+// Whether there is any such move.
+bool extrudes(std::string_view gcode);
+
 // How two lists of moves differ by more than rounding (0.01 mm), in words; nothing if they do not.
 std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
                                          const std::vector<ExtrusionMove>& b);

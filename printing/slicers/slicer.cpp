@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/text_file.h"
+#include "printing/write.h"
 
 namespace aerate {
 namespace {
@@ -65,10 +66,11 @@ bool names_post_processing(std::string_view line) {
 // A copy without the programs that would be run on the G-code: Slic3r has no option for that.
 fs::path without_post_processing(const fs::path& settings, const fs::path& copy) {
   std::istringstream in(read_text(settings));
-  std::ofstream out(copy, std::ios::binary);
+  std::string kept;
   for (std::string line; std::getline(in, line);) {
-    if (!names_post_processing(line)) out << line << '\n';
+    if (!names_post_processing(line)) kept.append(line).append("\n");
   }
+  write_bytes(kept, copy);
   return copy;
 }
 
@@ -193,7 +195,7 @@ void replace_cura_header(const fs::path& gcode, std::string_view printed) {
   const std::size_t old_end = text.find("\n\n");
   if (!text.starts_with(";FLAVOR") || old_end == std::string::npos) return;
   text.replace(0, old_end + 1, header);
-  std::ofstream(gcode, std::ios::binary) << text;
+  write_bytes(text, gcode);
 }
 
 [[noreturn]] void fail(const Slicer& slicer, const SliceJob& job, const std::string& why,
@@ -273,7 +275,7 @@ GcodeFigures slice(const Slicer& slicer, const SliceJob& job, Monitor& monitor) 
     fail(slicer, job, "wrote no G-code", outcome.printed);
   if (slicer.kind == SlicerKind::cura_engine) replace_cura_header(job.gcode, outcome.printed);
   const std::string text = read_text(job.gcode);
-  if (extrusion_moves(text).empty()) fail(slicer, job, "wrote G-code that extrudes nothing", outcome.printed);
+  if (!extrudes(text)) fail(slicer, job, "wrote G-code that extrudes nothing", outcome.printed);
   GcodeFigures figures = figures_of(text);
   if (slicer.kind == SlicerKind::cura_engine) {
     constexpr std::string_view kVolume = "Filament (mm^3): ";

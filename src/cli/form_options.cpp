@@ -1,18 +1,13 @@
 #include "cli/form_options.h"
 
-#include <fmt/format.h>
 #include <map>
 
-#include "cli/numbers.h"
-#include "core/error.h"
+#include "cli/void_options.h"
 
 namespace aerate::cli {
 
 FormOptions::FormOptions(CLI::App& command, const ConfigFile& config) : packing_(command, config) {
-  command.add_option("--tolerance", tolerance_, "Void surfaces stay this far inside their spheres at most")
-      ->check(number_between({}, kLongest, "mm"))
-      ->type_name("MM")
-      ->capture_default_str();
+  add_tolerance(command, tolerance_);
   command
       .add_option("--as", as_,
                   "What is printed: voids, modifiers (see 'aerate hollow --help'), or auto: whichever takes "
@@ -20,10 +15,7 @@ FormOptions::FormOptions(CLI::App& command, const ConfigFile& config) : packing_
       ->check(CLI::IsMember({"auto", "voids", "modifiers"}))
       ->type_name("FORM")
       ->capture_default_str();
-  command.add_option("--modifier-infill", modifier_infill_percent, "Infill inside modifiers")
-      ->check(number_between(0.0, 100, "%"))
-      ->type_name("PERCENT")
-      ->capture_default_str();
+  add_modifier_infill(command, modifier_infill_percent);
   command.add_option("--slicer-path", slicer_path, "The slicer's program (default: looked for on the PATH)")
       ->type_name("FILE");
 }
@@ -34,11 +26,7 @@ HollowOptions FormOptions::hollow(const ModelOptions& model) const {
   options.load = model.load();
   options.packing = packing_.request();
   options.tolerance = tolerance_;
-  if (tolerance_ > options.packing.limits.min_radius / 2) {
-    throw UsageError(fmt::format("--tolerance {} mm is more than half of --min-radius {} mm", tolerance_,
-                                 options.packing.limits.min_radius),
-                     "give a smaller --tolerance or a larger --min-radius");
-  }
+  require_tolerance_for(options.packing.limits, tolerance_);
   return options;
 }
 

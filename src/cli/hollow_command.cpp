@@ -1,7 +1,6 @@
 #include "cli/hollow_command.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,7 +9,7 @@
 #include "cli/numbers.h"
 #include "cli/print_options.h"
 #include "cli/run_reported.h"
-#include "core/error.h"
+#include "cli/void_options.h"
 #include "pipeline/hollow.h"
 #include "pipeline/material_choice.h"
 
@@ -40,19 +39,13 @@ struct HollowCommand::Options {
         ->check(CLI::IsMember({"prusa", "orca"}))
         ->type_name("FLAVOR")
         ->capture_default_str();
-    command.add_option("--modifier-infill", modifier_infill, "Infill inside modifiers")
-        ->check(number_between(0.0, 100, "%"))
-        ->type_name("PERCENT")
-        ->capture_default_str();
+    add_modifier_infill(command, modifier_infill);
     command
         .add_option(
             "--spheres", spheres,
             "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
         ->type_name("FILE");
-    command.add_option("--tolerance", tolerance, "Void surfaces stay this far inside their spheres at most")
-        ->check(number_between({}, kLongest, "mm"))
-        ->type_name("MM")
-        ->capture_default_str();
+    add_tolerance(command, tolerance);
     command
         .add_option("--max-triangles", max_triangles,
                     "Loosen the tolerance until the result has at most so many triangles")
@@ -113,11 +106,7 @@ struct HollowCommand::Options {
                                        density, price);
     options.print = print.settings(options.packing);
     options.heavier = print.heavier();
-    if (tolerance > options.packing.limits.min_radius / 2) {
-      throw UsageError(fmt::format("--tolerance {} mm is more than half of --min-radius {} mm", tolerance,
-                                   options.packing.limits.min_radius),
-                       "give a smaller --tolerance or a larger --min-radius");
-    }
+    require_tolerance_for(options.packing.limits, tolerance);
     return options;
   }
 

@@ -1,32 +1,19 @@
 #include "cli/report_json.h"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/json_parts.h"
 #include "printing/strength.h"
 
 namespace aerate::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json json_of(Vec3d v) {
   return {v.x, v.y, v.z};
 }
 
-template <typename T>
-Json json_of(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json json_of(const std::optional<Vec3d>& value) {
   return value ? json_of(*value) : Json(nullptr);
-}
-
-Json header(const char* command) {
-  return {{"schema", std::string("aerate.") + command},
-          {"schema_version", kReportSchemaVersion},
-          {"program", std::string("aerate ") + AERATE_VERSION}};
 }
 
 Json json_of(const Box3f& box) {
@@ -94,7 +81,7 @@ Json json_of(PackingMethod method, const DeviceUse& device, double density,
 }
 
 Json json_of(const Clearances& clearances) {
-  return {{"wall_mm", clearances.wall}, {"gap_mm", json_of(clearances.gap)}};
+  return {{"wall_mm", clearances.wall}, {"gap_mm", or_null(clearances.gap)}};
 }
 
 void add_closing(Json& json, const std::vector<StageCost>& stages, const std::vector<std::string>& notices) {
@@ -107,11 +94,6 @@ void add_closing(Json& json, const std::vector<StageCost>& stages, const std::ve
   json["seconds"] = total.seconds;
   json["peak_memory_bytes"] = total.peak_bytes;
   json["notices"] = notices;
-}
-
-std::string dump(const Json& json) {
-  // File names may hold any bytes; what is not UTF-8 is replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 // What voids would remove they do not as modifiers: null there, and what is known under "modifiers".
@@ -160,7 +142,7 @@ Json json_of(const PrintPrediction& print) {
           {"filament_after_mm3", print.filament_after_mm3},
           {"filament_change_percent", 100 * (print.filament_after_mm3 / print.filament_before_mm3 - 1)},
           {"break_even_infill_percent", in_percent(print.break_even_infill)},
-          {"break_even_radius_mm", json_of(print.break_even_radius)},
+          {"break_even_radius_mm", or_null(print.break_even_radius)},
           {"time_direction", name_of(print.time)}};
 }
 
@@ -168,24 +150,18 @@ Json json_of(const Balance& balance, const OutputFacts& output) {
   return {{"solid_fraction", output.volume_after / output.volume_before},
           {"relative_stiffness_upper_bound", balance.stiffness},
           {"poisson_ratio", kPoissonRatio},
-          {"footing_margin_before_mm", json_of(balance.margin_before)},
-          {"footing_margin_after_mm", json_of(balance.margin_after)},
+          {"footing_margin_before_mm", or_null(balance.margin_before)},
+          {"footing_margin_after_mm", or_null(balance.margin_after)},
           {"tips_over", balance.tips_over()}};
 }
 
 Json volume_of(const HollowReport& report) {
   const OutputFacts& output = report.output;
-  if (report.modifiers) {
-    return {{"before_mm3", output.volume_before},
-            {"after_mm3", nullptr},
-            {"removed_mm3", nullptr},
-            {"removed_percent", nullptr},
-            {"estimated", report.volume_estimated}};
-  }
+  const auto of_voids = [&](double value) { return report.modifiers ? Json(nullptr) : Json(value); };
   return {{"before_mm3", output.volume_before},
-          {"after_mm3", output.volume_after},
-          {"removed_mm3", output.volume_removed},
-          {"removed_percent", 100 * output.volume_removed / output.volume_before},
+          {"after_mm3", of_voids(output.volume_after)},
+          {"removed_mm3", of_voids(output.volume_removed)},
+          {"removed_percent", of_voids(100 * output.volume_removed / output.volume_before)},
           {"estimated", report.volume_estimated}};
 }
 
@@ -204,17 +180,17 @@ Json modifiers_of(const HollowReport& report) {
 
 std::string to_json(const HollowReport& report) {
   const OutputFacts& output = report.output;
-  Json json = header("hollow");
+  Json json = report_header("hollow");
   json["input"] = json_of(report.input);
   json["process"] = json_of(report.process);
   json["limits"] = json_of(report.limits);
   json["limits"]["tolerance_mm"] = report.tolerance_asked;
-  json["limits"]["max_triangles"] = json_of(report.max_triangles);
+  json["limits"]["max_triangles"] = or_null(report.max_triangles);
   json["packing"] =
       json_of(report.method, report.packing_device, report.packing_density, report.packing_statistics);
   json["surface"] = {{"mode", report.surface == OuterSurface::kept ? "kept" : "remeshed"},
-                     {"voxel_mm", json_of(report.voxel_size)},
-                     {"outer_deviation_mm", json_of(report.outer_deviation)}};
+                     {"voxel_mm", or_null(report.voxel_size)},
+                     {"outer_deviation_mm", or_null(report.outer_deviation)}};
   json["output"] = {{"path", output.path.string()},
                     {"bytes", output.file_bytes},
                     {"triangles", output.triangle_count},
@@ -239,7 +215,7 @@ std::string to_json(const HollowReport& report) {
 }
 
 std::string to_json(const PackReport& report) {
-  Json json = header("pack");
+  Json json = report_header("pack");
   json["input"] = json_of(report.input);
   json["process"] = json_of(report.process);
   json["limits"] = json_of(report.packing.limits);
@@ -253,7 +229,7 @@ std::string to_json(const PackReport& report) {
 
 std::string to_json(const InspectReport& report) {
   const Inspection& inspection = report.input.inspection;
-  Json json = header("inspect");
+  Json json = report_header("inspect");
   json["input"] = json_of(report.input);
   Json holes = Json::array();
   for (const BoundaryLoop& loop : inspection.boundary_loops)

@@ -2,15 +2,12 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/report_json.h"
+#include "cli/json_parts.h"
 
 namespace aerate::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string cell(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
@@ -63,21 +60,16 @@ std::string time_line(const std::vector<SlicedForm>& forms, const std::vector<St
                      total_of(stages).seconds - slicing);
 }
 
-template <typename T>
-Json json_of(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json json_of(const std::vector<SlicedForm>& forms) {
   Json list = Json::array();
   for (const SlicedForm& form : forms) {
     const GcodeFigures& figures = form.figures;
     Json entry = {{"form", name_of(form.form)},
-                  {"filament_mm", json_of(figures.filament_mm)},
-                  {"filament_cm3", json_of(figures.filament_cm3)},
-                  {"filament_g", json_of(figures.filament_g)},
-                  {"cost", json_of(figures.cost)},
-                  {"seconds", json_of(figures.seconds)},
+                  {"filament_mm", or_null(figures.filament_mm)},
+                  {"filament_cm3", or_null(figures.filament_cm3)},
+                  {"filament_g", or_null(figures.filament_g)},
+                  {"cost", or_null(figures.cost)},
+                  {"seconds", or_null(figures.seconds)},
                   {"layers", figures.layers}};
     entry["filament_saved_percent"] = form.form == PrintForm::solid
                                           ? Json(nullptr)
@@ -97,16 +89,6 @@ void add_closing(Json& json, const std::vector<SlicedForm>& forms, const std::ve
   json["seconds_in_slicer"] = slicer_seconds(forms);
   json["peak_memory_bytes"] = total.peak_bytes;
   json["notices"] = notices;
-}
-
-Json header(const char* command) {
-  return {{"schema", std::string("aerate.") + command},
-          {"schema_version", kReportSchemaVersion},
-          {"program", std::string("aerate ") + AERATE_VERSION}};
-}
-
-std::string dump(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -130,7 +112,7 @@ std::string to_text(const HookReport& report) {
 }
 
 std::string to_json(const SliceReport& report) {
-  Json json = header("slice");
+  Json json = report_header("slice");
   json["model"] = report.model.string();
   json["slicer"] = {{"name", name_of(report.slicer.kind)}, {"program", report.slicer.program.string()}};
   json["forms"] = json_of(report.forms);
@@ -140,7 +122,7 @@ std::string to_json(const SliceReport& report) {
 }
 
 std::string to_json(const HookReport& report) {
-  Json json = header("hook");
+  Json json = report_header("hook");
   json["gcode"] = report.gcode.string();
   json["generator"] = report.origin.name;
   json["forms"] = json_of(report.forms);

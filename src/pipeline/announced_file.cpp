@@ -1,8 +1,6 @@
 #include "pipeline/announced_file.h"
 
-#include <cerrno>
 #include <fmt/format.h>
-#include <fstream>
 #include <system_error>
 
 #include "core/error.h"
@@ -21,14 +19,7 @@ AnnouncedFile::~AnnouncedFile() {
 }
 
 void AnnouncedFile::commit_text(std::string_view text) {
-  errno = 0;
-  std::ofstream stream(file_->path(), std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (!stream) {
-    throw FailureError(fmt::format("{}: cannot be written: {}", file_->target().string(),
-                                   std::generic_category().message(errno)));
-  }
+  write_bytes(text, *file_);
   file_->commit();
 }
 

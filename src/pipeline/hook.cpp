@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/text_file.h"
+#include "printing/write.h"
 
 namespace aerate {
 namespace {
@@ -32,7 +32,7 @@ std::string read_gcode(const fs::path& path) {
     throw InputError(path.string() + ": is binary G-code, which a script cannot edit",
                      "switch binary G-code off in the slicer's printer settings");
   }
-  if (origin_of(text).generator == GcodeGenerator::unknown || extrusion_moves(text).empty()) {
+  if (origin_of(text).generator == GcodeGenerator::unknown || !extrudes(text)) {
     throw InputError(path.string() + ": is not G-code of a slicer that is known here",
                      "PrusaSlicer, SuperSlicer, OrcaSlicer, Slic3r and Cura are");
   }
@@ -125,7 +125,7 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
   const std::vector<PrintForm> hollowed = forms_to_try(options.form, slicer.kind);
   // A slicer tells G-code by its ending, and the file that a script gets may have another.
   const fs::path settings = scratch / "settings.gcode";
-  std::ofstream(settings, std::ios::binary) << original;
+  write_bytes(original, settings);
   const bool is_project = options.hollow.model.extension() == ".3mf";
   const FormJob job{.slicer = slicer,
                     .settings = {{settings}},
