@@ -54,9 +54,10 @@ AERATE_HD inline CellFate fate_of(double bound, double half_diagonal, double thr
 }
 
 // Brings a cell's bound up to date with the balls placed since, if that decides its fate.
+template <typename Shape>
 struct Examine {
   CellsView cells;
-  FieldView field;
+  FieldView<Shape> field;
   std::size_t first;
   double threshold;
   double finest;  // cells of at most this half diagonal are not halved
@@ -108,8 +109,9 @@ struct Child {
   double bound;
 };
 
+template <typename Shape>
 struct MakeChildren {
-  FieldView field;
+  FieldView<Shape> field;
   double root_half_diagonal;
   View<const Cell> parents;
   double threshold;
@@ -199,9 +201,10 @@ struct PutBack {
   }
 };
 
+template <typename Shape>
 struct MakeRoots {
   CellsView cells;
-  FieldView field;
+  FieldView<Shape> field;
   Vec3d origin;
   double edge;
   std::uint32_t count_x, count_y;
@@ -220,7 +223,7 @@ struct MakeRoots {
 
 }  // namespace cell_tree_detail
 
-template <typename Executor>
+template <typename Executor, typename Shape = BallShape>
 class CellTree {
  public:
   CellTree(const Executor& executor, Paced<Executor>& paced) : executor_(executor), paced_(paced) {}
@@ -229,7 +232,7 @@ class CellTree {
 
   // Covers the box; nothing is placed yet.
   //   most_at_a_time: cells and children that are worked on at a time; at least 8
-  void make_roots(const FieldView& field, const Box3d& box, std::size_t most_at_a_time) {
+  void make_roots(const FieldView<Shape>& field, const Box3d& box, std::size_t most_at_a_time) {
     most_at_a_time_ = most_at_a_time / 8 * 8;
     constexpr double kRootsAlongLongest = 12;
     const Vec3d size = box.upper - box.lower;
@@ -241,12 +244,13 @@ class CellTree {
     root_half_diagonal_ = edge * cell_tree_detail::kHalfDiagonalOfEdge;
     resize(std::size_t{nx} * ny * nz);
     executor_.for_each_index(cells_.size(),
-                             cell_tree_detail::MakeRoots{view(), field, box.lower, edge, nx, ny});
+                             cell_tree_detail::MakeRoots<Shape>{view(), field, box.lower, edge, nx, ny});
   }
 
   // Halves cells until those in which f may reach `threshold` have half diagonals of at most `finest`.
   // Returns these, ascending, valid until the next call. `least`: cells that cannot reach this are of no use.
-  View<const std::uint32_t> refine(const FieldView& field, double threshold, double finest, double least) {
+  View<const std::uint32_t> refine(const FieldView<Shape>& field, double threshold, double finest,
+                                   double least) {
     if (useful_ < cells_.size() / 2 && cells_.size() > kLeastToTidy) tidy(least);
     searched_.clear();
     parents_.clear();
@@ -263,12 +267,12 @@ class CellTree {
     bounds_.resize(executor_, count);
   }
 
-  void examine(const FieldView& field, double threshold, double finest, double least) {
+  void examine(const FieldView<Shape>& field, double threshold, double finest, double least) {
     using namespace cell_tree_detail;
     useful_ = 0;
     for_each_piece(cells_.size(), most_at_a_time_, [&](std::size_t first, std::size_t count) {
       fates_.resize(executor_, count);
-      paced_.for_each_index(count, Examine{view(), field, first, threshold, finest, fates_.view()});
+      paced_.for_each_index(count, Examine<Shape>{view(), field, first, threshold, finest, fates_.view()});
       const std::size_t parents = parents_.size(), searched = searched_.size();
       parents_.resize(executor_, parents + count);
       searched_.resize(executor_, searched + count);
@@ -283,15 +287,15 @@ class CellTree {
   }
 
   // Makes cells of the parents' children; those to be halved again become the parents.
-  void halve_parents(const FieldView& field, double threshold, double finest, double least) {
+  void halve_parents(const FieldView<Shape>& field, double threshold, double finest, double least) {
     using namespace cell_tree_detail;
     next_parents_.clear();
     for_each_piece(8 * parents_.size(), most_at_a_time_, [&](std::size_t first_child, std::size_t count) {
       children_.resize(executor_, count);
       fates_.resize(executor_, count);
       const View<const Cell> parents{parents_.view().data + first_child / 8, count / 8};
-      paced_.for_each_index(count, MakeChildren{field, root_half_diagonal_, parents, threshold, finest, least,
-                                                children_.view(), fates_.view()});
+      paced_.for_each_index(count, MakeChildren<Shape>{field, root_half_diagonal_, parents, threshold, finest,
+                                                       least, children_.view(), fates_.view()});
       const std::size_t cells = cells_.size(), next = next_parents_.size(), searched = searched_.size();
       resize(cells + count);
       next_parents_.resize(executor_, next + count);

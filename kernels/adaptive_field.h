@@ -5,13 +5,16 @@
 
 #include "kernels/ball_grid.h"
 #include "kernels/nearest_point.h"
+#include "kernels/roof_distance.h"
+#include "kernels/roofed_surface.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
 #include "kernels/winding.h"
 
-// The clearance f(x) = min(distance to the surface - wall, min over placed balls of |x - c| - r - gap),
-// negative outside the solid, that the adaptive packing places its balls by.
+// The clearance f(x), the largest radius of a void at x, that the adaptive packing places its voids by. For
+// balls f(x) = min(distance to the surface - wall, min over placed balls of |x - c| - r - gap). It is
+// negative outside the solid and changes by no more than x moves.
 
 namespace aerate::kernels {
 
@@ -22,10 +25,11 @@ struct Clearance {
   double radius;
 };
 
+template <typename Shape>
 struct FieldView {
   TriangleBvhView surface;
   WindingView winding;
-  BallGridView balls;
+  BallGridView<Shape> balls;
   double wall = 0;
 };
 
@@ -33,11 +37,14 @@ struct FieldView {
 // changes by no more than the way walked, so nearby points often need not ask again.
 struct SurfaceAnchor {
   Vec3d point;
-  double signed_distance;  // 0 if nothing is known; inside the solid it may be too small
-  std::uint32_t facet;     // may be kNoFacet
+  // 0 if nothing is known; inside the solid it may be too small, and is, for voids with roofs, that of the
+  // largest void: its radius and the wall.
+  double signed_distance;
+  std::uint32_t facet;  // may be kNoFacet
 };
 
-AERATE_HD inline bool is_inside(const FieldView& field, const SurfaceAnchor& anchor, Vec3d p) {
+template <typename Shape>
+AERATE_HD inline bool is_inside(const FieldView<Shape>& field, const SurfaceAnchor& anchor, Vec3d p) {
   const double walked_squared = length_squared(p - anchor.point);
   if (walked_squared < anchor.signed_distance * anchor.signed_distance * 0.999999) {
     return anchor.signed_distance > 0;
@@ -46,7 +53,22 @@ AERATE_HD inline bool is_inside(const FieldView& field, const SurfaceAnchor& anc
 }
 
 // The anchor at p, given one nearby.
-AERATE_HD inline SurfaceAnchor anchor_at(const FieldView& field, const SurfaceAnchor& nearby, Vec3d p) {
+template <typename Shape>
+AERATE_HD inline SurfaceAnchor anchor_at(const FieldView<Shape>& field, const SurfaceAnchor& nearby,
+                                         Vec3d p) {
+  if constexpr (Shape::kHasRoof) {
+    if (is_inside(field, nearby, p)) {
+      const Roof& roof = field.balls.shape.roof;
+      WidestVoid widest;
+      if (nearby.facet == kNoFacet) {
+        widest = widest_void(field.surface, roof, p, field.wall);
+      } else {
+        const double known = radius_within(roof, p, field.surface.facets[nearby.facet], field.wall).value;
+        widest = narrower_than(field.surface, roof, p, field.wall, {known, nearby.facet});
+      }
+      return {p, widest.radius + field.wall, widest.facet};
+    }
+  }
   NearestFacet nearest{kUnbounded, nearby.facet};
   if (nearby.facet != kNoFacet) {
     nearest.distance_squared = distance_squared_to_facet(p, field.surface.facets[nearby.facet]);
@@ -58,11 +80,15 @@ AERATE_HD inline SurfaceAnchor anchor_at(const FieldView& field, const SurfaceAn
 
 // The same where distances of more than `most_inside`, or `most_outside` on the other side, are of no
 // concern: the signed distance is then one of at least that, and the facet any.
-AERATE_HD inline SurfaceAnchor anchor_within(const FieldView& field, const SurfaceAnchor& nearby, Vec3d p,
-                                             double most_inside, double most_outside) {
+template <typename Shape>
+AERATE_HD inline SurfaceAnchor anchor_within(const FieldView<Shape>& field, const SurfaceAnchor& nearby,
+                                             Vec3d p, double most_inside, double most_outside) {
   const double still_inside = nearby.signed_distance - length(p - nearby.point);
   if (still_inside > max_of(most_inside, 0.0)) return {p, still_inside, nearby.facet};
   const bool inside = is_inside(field, nearby, p);
+  if constexpr (Shape::kHasRoof) {
+    if (inside) return anchor_at(field, nearby, p);
+  }
   // A trifle more, so that what is just as far is found.
   const double most = max_of(inside ? most_inside : most_outside, 0.0) * (1 + 1e-12);
   NearestFacet nearest{most * most, kNoFacet};
@@ -76,7 +102,8 @@ AERATE_HD inline SurfaceAnchor anchor_within(const FieldView& field, const Surfa
 }
 
 // The constraint that a facet is at p, which is at `signed_distance` from it.
-AERATE_HD inline Clearance facet_clearance(const FieldView& field, std::uint32_t facet,
+template <typename Shape>
+AERATE_HD inline Clearance facet_clearance(const FieldView<Shape>& field, std::uint32_t facet,
                                            double signed_distance, Vec3d p, double scale) {
   // A plane is a sphere of a large radius.
   constexpr double kPlaneRadii = 256;
@@ -91,23 +118,71 @@ AERATE_HD inline Clearance facet_clearance(const FieldView& field, std::uint32_t
   return result;
 }
 
+// The constraint that a facet is to a void with a roof at p: that of the ball on its spine that touches.
+AERATE_HD inline Clearance roofed_facet_clearance(const FieldView<RoofedShape>& field, std::uint32_t facet,
+                                                  Vec3d p, double scale) {
+  const Roof& roof = field.balls.shape.roof;
+  const SpineReach reach = radius_within(roof, p, field.surface.facets[facet], field.wall);
+  const double fallen = reach.height * roof.sine;
+  Clearance result =
+      facet_clearance(field, facet, reach.value - fallen + field.wall, p + roof.up * reach.height, scale);
+  result.value = reach.value;
+  result.centre = result.centre - roof.up * reach.height;
+  result.radius -= fallen;
+  return result;
+}
+
+// The constraint that a placed void is at p.
+template <typename Shape>
+AERATE_HD inline Clearance ball_clearance(const FieldView<Shape>& field, const NearestBall& nearest,
+                                          Vec3d p) {
+  const Ball& ball = field.balls.balls[nearest.ball];
+  Clearance result{nearest.clearance, ball.centre, ball.radius + field.balls.gap};
+  if constexpr (Shape::kHasRoof) {
+    const Roof& roof = field.balls.shape.roof;
+    const SpineReach reach = radius_beside(roof, p, ball.centre, ball.radius, field.balls.gap);
+    result.centre = ball.centre - roof.up * reach.height;
+    result.radius -= std::abs(reach.height) * roof.sine;
+  }
+  return result;
+}
+
+// The surface's part of `clearance_at` at a point inside, for voids with roofs; `result` has the balls' part.
+AERATE_HD inline Clearance roofed_clearance_inside(const FieldView<RoofedShape>& field, SurfaceAnchor& anchor,
+                                                   Vec3d p, double limit, double enough,
+                                                   const Clearance& result) {
+  const Roof& roof = field.balls.shape.roof;
+  WidestVoid widest{result.value, kNoFacet};
+  if (anchor.facet != kNoFacet) {
+    const double known = radius_within(roof, p, field.surface.facets[anchor.facet], field.wall).value;
+    if (known < min_of(enough, result.value)) return roofed_facet_clearance(field, anchor.facet, p, limit);
+    if (known < widest.radius) widest = {known, anchor.facet};
+  }
+  widest = narrower_than(field.surface, roof, p, field.wall, widest);
+  if (widest.facet == kNoFacet) return result;
+  anchor = {p, widest.radius + field.wall, widest.facet};
+  return roofed_facet_clearance(field, widest.facet, p, limit);
+}
+
 // f(p) clipped to `limit` (where it is clipped, the sphere that comes with it means nothing) and what attains
 // it; or, if f(p) < enough, anything that is below `enough` at p, with its value. What is cheap is asked
 // first.
-AERATE_HD inline Clearance clearance_at(const FieldView& field, SurfaceAnchor& anchor, Vec3d p, double limit,
-                                        double enough) {
+template <typename Shape>
+AERATE_HD inline Clearance clearance_at(const FieldView<Shape>& field, SurfaceAnchor& anchor, Vec3d p,
+                                        double limit, double enough) {
   const NearestBall ball = field.balls.nearest(p, limit);
   Clearance result{ball.clearance, p, 0};
   if (ball.ball != kNoBall) {
-    const Ball& b = field.balls.balls[ball.ball];
-    result.centre = b.centre;
-    result.radius = b.radius + field.balls.gap;
+    result = ball_clearance(field, ball, p);
     if (result.value < enough) return result;
   }
   const double walked = length(p - anchor.point);
   if (anchor.signed_distance - walked - field.wall >= result.value) return result;
 
   const bool inside = is_inside(field, anchor, p);
+  if constexpr (Shape::kHasRoof) {
+    if (inside) return roofed_clearance_inside(field, anchor, p, limit, enough, result);
+  }
   NearestFacet nearest{kUnbounded, anchor.facet};
   if (anchor.facet != kNoFacet) {
     nearest.distance_squared = distance_squared_to_facet(p, field.surface.facets[anchor.facet]);

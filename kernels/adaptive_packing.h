@@ -19,10 +19,12 @@
 #include "kernels/ball_grid.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/roof.h"
 #include "kernels/tally.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
+#include "kernels/void_shape.h"
 #include "kernels/winding.h"
 
 // The adaptive packing as one template over the executor (docs/packing.md says how it works and why).
@@ -36,8 +38,9 @@ struct AdaptiveParameters {
   double min_radius = 0;
   double max_radius = kUnbounded;
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
-  double max_volume = kUnbounded;  // mm3, of all balls
-  double level_ratio = 0.9;        // balls of a level are at least this much of its largest
+  double max_volume = kUnbounded;  // mm3, of all voids
+  Roof roof{};
+  double level_ratio = 0.9;  // balls of a level are at least this much of its largest
   // Cells that are searched: their half diagonal to the level's least radius, and how far a search goes, in
   // extents of its cell. The first balls are most of the volume and little of the work, so they get finer
   // ones.
@@ -77,9 +80,10 @@ struct AdaptiveResult {
 
 namespace adaptive_detail {
 
+template <typename Shape>
 struct Search {
   CellsView cells;
-  FieldView field;
+  FieldView<Shape> field;
   View<const std::uint32_t> list;
   RefineLimits limits;
   double shrink;  // taken off every radius, against rounding
@@ -134,19 +138,19 @@ inline std::size_t elements_at_a_time(std::size_t free_bytes, std::size_t most) 
 
 }  // namespace adaptive_detail
 
-template <typename Executor>
+template <typename Executor, typename Shape>
 class AdaptivePacker {
  public:
   // The executor and the input stay with the caller.
-  AdaptivePacker(const Executor& executor, const AdaptiveInput& input)
+  AdaptivePacker(const Executor& executor, const AdaptiveInput& input, const Shape& shape)
       : executor_(executor),
         paced_(executor, [this, &input] { input.progress(share_done()); }),
         parameters_(input.parameters),
         box_(input.box),
         solid_volume_(input.volume),
-        grid_(executor),
+        grid_(executor, shape),
         tree_(executor, paced_),
-        selection_(executor, paced_) {
+        selection_(executor, paced_, shape) {
     build_index(input);
     at_a_time_ = adaptive_detail::elements_at_a_time(executor_.free_bytes(), input.most_at_a_time);
     const Vec3d size = box_.upper - box_.lower;
@@ -239,13 +243,14 @@ class AdaptivePacker {
 
   bool among_the_first() const { return balls_.size() < parameters_.first_count; }
 
-  FieldView field() { return {bvh_.view, winding_.view, grid_.view(), parameters_.wall}; }
+  FieldView<Shape> field() { return {bvh_.view, winding_.view, grid_.view(), parameters_.wall}; }
 
   // Starts from the densest lattice of balls of max_radius where that is small against the model, in the best
   // of several orientations and offsets; `Lattice` says which there are. In slender models a lattice fits
-  // badly whatever its offset, and balls that settle are denser.
+  // badly whatever its offset, and balls that settle are denser. There is none for voids with roofs.
   void place_lattice(double half_extent) {
     if (!(parameters_.max_radius * kLatticeDiameters < half_extent)) return;
+    if (parameters_.roof.shapes(parameters_.max_radius)) return;
     // A trifle smaller, so that ten balls fit where ten diameters are the length of a box.
     const double radius = parameters_.max_radius * (1 - 1e-9);
     const LatticeFit fit{bvh_.view, winding_.view, radius + parameters_.wall + shrink_};
@@ -339,11 +344,11 @@ class AdaptivePacker {
       searched_.resize(executor_, list.size);
       found_.resize(executor_, list.size);
       resize_candidates(found + list.size);
-      paced_.for_each_index(
-          list.size, Search{tree_.view(), field(), list, limits, shrink_, searched_.view(), found_.view()});
+      paced_.for_each_index(list.size, Search<Shape>{tree_.view(), field(), list, limits, shrink_,
+                                                     searched_.view(), found_.view()});
       if (settling != nullptr) {
         paced_.for_each_index(list.size,
-                              Settle{field(), *settling, shrink_, searched_.view(), found_.view()});
+                              Settle<Shape>{field(), *settling, shrink_, searched_.view(), found_.view()});
       }
       const ListFound append{searched_.view(),   found_.view(), found,
                              candidates_.view(), keys_.view(),  order_.view()};
@@ -365,7 +370,7 @@ class AdaptivePacker {
     std::size_t count = first;
     for (const Ball& ball :
          executor_.download(View<Ball>{balls_.view().data + first, balls_.size() - first})) {
-      volume_ += kSphereVolume * ball.radius * ball.radius * ball.radius;
+      volume_ += void_volume(parameters_.roof, ball.radius);
       ++count;
       if (volume_ < parameters_.max_volume) continue;
       done_ = true;
@@ -388,10 +393,10 @@ class AdaptivePacker {
   std::size_t at_a_time_ = 0;
   std::size_t search_count_ = 0, round_count_ = 0, lattice_count_ = 0;
 
-  BallGrid<Executor> grid_;
+  BallGrid<Executor, Shape> grid_;
   BallOrder<Executor> ball_order_;
-  CellTree<Executor> tree_;
-  CandidateSelection<Executor> selection_;
+  CellTree<Executor, Shape> tree_;
+  CandidateSelection<Executor, Shape> selection_;
   GrowingBuffer<Executor, Ball> balls_;
   GrowingBuffer<Executor, Candidate> searched_, candidates_;
   GrowingBuffer<Executor, std::uint8_t> found_;
@@ -403,10 +408,15 @@ class AdaptivePacker {
 // the hierarchy's, their boxes, and keys and order with a second copy to sort them.
 inline constexpr std::size_t kAdaptiveIndexBytes = 2 * sizeof(Facet) + sizeof(Box3f) + 12;
 
-// The whole job. The triangles go to the executor's memory once, and each ball comes back once.
+// The whole job. The triangles go to the executor's memory once, and each ball comes back once. Two
+// functions, so that an executor pays for voids with roofs only where it packs them.
 template <typename Executor>
 AdaptiveResult pack_adaptive(const Executor& executor, const AdaptiveInput& input) {
-  return AdaptivePacker<Executor>(executor, input).pack();
+  return AdaptivePacker<Executor, BallShape>(executor, input, {}).pack();
+}
+template <typename Executor>
+AdaptiveResult pack_adaptive_with_roofs(const Executor& executor, const AdaptiveInput& input) {
+  return AdaptivePacker<Executor, RoofedShape>(executor, input, {input.parameters.roof}).pack();
 }
 
 }  // namespace aerate::kernels

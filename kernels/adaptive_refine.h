@@ -162,8 +162,9 @@ struct RefineLimits {
 };
 
 // Looks for a local maximum of f of at least `limits.least` within about `extent` of the anchor's point.
-AERATE_HD inline LocalMaximum find_local_maximum(const FieldView& field, SurfaceAnchor anchor, double extent,
-                                                 const RefineLimits& limits) {
+template <typename Shape>
+AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, SurfaceAnchor anchor,
+                                                 double extent, const RefineLimits& limits) {
   constexpr int kMostSteps = 48;
   constexpr int kMostRestarts = 2;
   Vec3d p = anchor.point;

@@ -10,9 +10,11 @@
 #include "kernels/cell_grid.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/roof_distance.h"
 #include "kernels/tally.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
+#include "kernels/void_shape.h"
 
 // Which of many candidates become balls: every one that meets no larger one (priority-parallel acceptance).
 
@@ -41,21 +43,35 @@ namespace selection_detail {
 enum class Verdict : std::uint32_t { undecided, accepted, rejected };
 
 // Candidates in a grid of linked lists, by rank.
+template <typename Shape>
 struct CandidateGrid {
   CellGrid cells;
   View<std::uint32_t> heads;
   View<std::uint32_t> next;
   double gap = 0;
+  Shape shape{};
+
+  // Do the voids of two candidates come nearer to each other than the gap?
+  AERATE_HD bool meet(const Candidate& a, const Candidate& b) const {
+    double span = a.value + b.value + gap;
+    if constexpr (Shape::kHasRoof) span += shape.head_start(max_of(a.value, b.value));
+    if (length_squared(a.point - b.point) >= span * span) return false;
+    if constexpr (Shape::kHasRoof) {
+      return distance_between(shape.roof, a.point, a.value, b.point, b.value) < gap;
+    }
+    return true;
+  }
 };
 
 // All that happens to ranked candidates until it is known which are accepted, step by step: they are linked,
 // decided on in several passes, and unlinked. A chain of candidates that wait for each other may stay
 // undecided; those get their turn in the next round.
+template <typename Shape>
 struct Decide {
   static constexpr unsigned kPasses = 4;
   static constexpr unsigned kSteps = kPasses + 2;
 
-  CandidateGrid grid;
+  CandidateGrid<Shape> grid;
   View<const Candidate> unranked;
   View<const std::uint32_t> order;
   View<Candidate> ranked;
@@ -100,8 +116,7 @@ struct Decide {
           for (std::uint32_t j = grid.heads[cells.index(x, y, z)]; j != kNoBall; j = grid.next[j]) {
             if (j >= i || before[j] == Verdict::rejected) continue;
             const Candidate other = ranked[j];
-            const double span = me.value + other.value + grid.gap;
-            if (length_squared(me.point - other.point) >= span * span) continue;
+            if (!grid.meet(me, other)) continue;
             if (before[j] == Verdict::accepted) return Verdict::rejected;
             blocked = true;
           }
@@ -134,14 +149,19 @@ struct PlaceAccepted {
 
 }  // namespace selection_detail
 
-template <typename Executor>
+template <typename Executor, typename Shape = BallShape>
 class CandidateSelection {
  public:
-  CandidateSelection(const Executor& executor, Paced<Executor>& paced) : executor_(executor), paced_(paced) {}
+  CandidateSelection(const Executor& executor, Paced<Executor>& paced, const Shape& shape = {})
+      : executor_(executor), paced_(paced) {
+    grid_.shape = shape;
+  }
 
   // For candidates in the box with values up to `largest`.
   void reset(const Box3d& box, double largest, double gap, double least_cell) {
-    grid_.cells = make_cell_grid(box, max_of(2 * largest + gap, least_cell) * 1.000001);
+    double span = 2 * largest + gap;
+    if constexpr (Shape::kHasRoof) span += grid_.shape.head_start(largest);
+    grid_.cells = make_cell_grid(box, max_of(span, least_cell) * 1.000001);
     grid_.gap = gap;
     const std::size_t cells = grid_.cells.cell_count();
     if (heads_.size() < cells) heads_ = executor_.template allocate<std::uint32_t>(cells);
@@ -163,8 +183,8 @@ class CandidateSelection {
     other_verdicts_.resize(executor_, count);
     grid_.next = next_.view();
     paced_.for_each_step(
-        Decide::kSteps, count,
-        Decide{grid_, candidates, order, ranked_.view(), verdicts_.view(), other_verdicts_.view()});
+        Decide<Shape>::kSteps, count,
+        Decide<Shape>{grid_, candidates, order, ranked_.view(), verdicts_.view(), other_verdicts_.view()});
     const std::size_t first = balls.size();
     balls.resize(executor_, first + std::min(count, most));
     const Tally accepted =
@@ -176,7 +196,7 @@ class CandidateSelection {
  private:
   const Executor& executor_;
   Paced<Executor>& paced_;
-  selection_detail::CandidateGrid grid_;
+  selection_detail::CandidateGrid<Shape> grid_;
   typename Executor::template Buffer<std::uint32_t> heads_;
   GrowingBuffer<Executor, std::uint32_t> next_;
   GrowingBuffer<Executor, Candidate> ranked_;

@@ -33,7 +33,8 @@ struct Settling {
 };
 
 // `start`: f is at least `settling.least()` there.
-AERATE_HD inline RestingPlace find_resting_place(const FieldView& field, Vec3d start,
+template <typename Shape>
+AERATE_HD inline RestingPlace find_resting_place(const FieldView<Shape>& field, Vec3d start,
                                                  const Settling& settling) {
   constexpr int kMostSteps = 120;
   constexpr int kMostRestarts = 8;
@@ -87,8 +88,9 @@ AERATE_HD inline RestingPlace find_resting_place(const FieldView& field, Vec3d s
 }
 
 // Kernel: lets candidates come to rest, those farthest along the pull first; the others are none.
+template <typename Shape>
 struct Settle {
-  FieldView field;
+  FieldView<Shape> field;
   Settling settling;
   double shrink;  // taken off every radius, against rounding
   View<Candidate> candidates;

@@ -10,9 +10,11 @@
 #include "kernels/atomic.h"
 #include "kernels/cell_grid.h"
 #include "kernels/growing_buffer.h"
+#include "kernels/roof_distance.h"
 #include "kernels/space_curve.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
+#include "kernels/void_shape.h"
 
 // The balls placed so far, in a grid that answers which of them is nearest.
 
@@ -27,7 +29,7 @@ inline constexpr std::uint32_t kNoBall = 0xffffffffu;
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 struct NearestBall {
-  double clearance;  // |p - c| - r - gap, or the limit if no ball is nearer
+  double clearance;  // largest radius beside it, for balls |p - c| - r - gap; the limit if none is nearer
   std::uint32_t ball;
 };
 
@@ -40,6 +42,7 @@ struct BallEntry {
 // be `reach` or less, so that one cell answers a query whatever the sizes of the balls; a cell that lies
 // wholly in a ball names that ball alone. The grid is rebuilt with smaller cells as the largest clearance
 // left shrinks.
+template <typename Shape>
 struct BallGridView {
   static constexpr std::uint32_t kEmpty = 0xffffffffu;
   static constexpr std::uint32_t kInsideBit = 0x80000000u;
@@ -50,6 +53,7 @@ struct BallGridView {
   View<std::uint32_t> heads;  // by cell: kEmpty, first entry, or kInsideBit | ball
   View<BallEntry> entries;
   View<const Ball> balls;
+  Shape shape{};
 
   // The ball of least clearance at p, if that is below min(limit, reach). Ties go to the smaller index.
   AERATE_HD NearestBall nearest(Vec3d p, double limit) const {
@@ -66,10 +70,16 @@ struct BallGridView {
       // Most balls of a cell are farther than the best so far, which squares can tell. The slack keeps the
       // rounding of squares out of the decision, which would otherwise depend on the order of the list.
       constexpr double kSlack = 1 + 1e-14;
-      const double span = best.clearance + ball.radius + gap;
+      double span = best.clearance + ball.radius + gap;
+      if constexpr (Shape::kHasRoof) span += shape.head_start(max_of(best.clearance, ball.radius));
       const double distance_squared = length_squared(p - ball.centre);
       if (span < 0 || distance_squared > span * span * kSlack) continue;
-      const double clearance = std::sqrt(distance_squared) - ball.radius - gap;
+      double clearance;
+      if constexpr (Shape::kHasRoof) {
+        clearance = radius_beside(shape.roof, p, ball.centre, ball.radius, gap).value;
+      } else {
+        clearance = std::sqrt(distance_squared) - ball.radius - gap;
+      }
       if (clearance < best.clearance || (clearance == best.clearance && id < best.ball)) {
         best = {clearance, id};
       }
@@ -79,6 +89,26 @@ struct BallGridView {
 };
 
 namespace ball_grid_detail {
+
+// The box that holds every point from which a ball's clearance may be `reach` or less.
+template <typename Shape>
+AERATE_HD inline Box3d box_of_influence(const BallGridView<Shape>& grid, const Ball& ball) {
+  const double outer = ball.radius + grid.gap + grid.reach;
+  const Vec3d half{outer, outer, outer};
+  Box3d box{ball.centre - half, ball.centre + half};
+  if constexpr (Shape::kHasRoof) {
+    const Roof& roof = grid.shape.roof;
+    // The own roof reaches up to voids above; roofs of voids up to `reach` reach up to it from below.
+    const double above = roof.spine(ball.radius), below = roof.spine(grid.reach);
+    const double upper = outer - above * roof.sine, lower = outer - below * roof.sine;
+    const Vec3d top = ball.centre + roof.up * above, bottom = ball.centre - roof.up * below;
+    box.lower =
+        min_of(box.lower, min_of(top - Vec3d{upper, upper, upper}, bottom - Vec3d{lower, lower, lower}));
+    box.upper =
+        max_of(box.upper, max_of(top + Vec3d{upper, upper, upper}, bottom + Vec3d{lower, lower, lower}));
+  }
+  return box;
+}
 
 // Squared distances from a coordinate to the nearest and the farthest point of a cell along one axis.
 struct AxisDistances {
@@ -125,8 +155,9 @@ struct ReorderBalls {
 enum class EnterPass { mark_inside_and_count, link };
 
 // Enters one layer of cells along z of a ball: the unit of work, so that a large ball is not one thread's.
+template <typename Shape>
 struct EnterLayer {
-  BallGridView grid;
+  BallGridView<Shape> grid;
   std::uint32_t first_ball;
   std::uint32_t layers;  // for each ball: at least as many as any has
   EnterPass pass;
@@ -139,8 +170,8 @@ struct EnterLayer {
     const double outer = ball.radius + grid.gap + grid.reach;
     // Half the gap belongs to each ball: cells inside two balls at once cannot be.
     const double inner = ball.radius + 0.5 * grid.gap;
-    const Vec3d reach{outer, outer, outer};
-    const CellBox range(grid.cells, ball.centre - reach, ball.centre + reach);
+    const Box3d influence = box_of_influence(grid, ball);
+    const CellBox range(grid.cells, influence.lower, influence.upper);
     const std::uint32_t z = range.z0 + static_cast<std::uint32_t>(i % layers);
     if (z > range.z1) return;
     const AxisDistances dz(ball.centre.z, grid.cells.origin.z, grid.cells.cell_size, z);
@@ -149,18 +180,22 @@ struct EnterLayer {
       const AxisDistances dy(ball.centre.y, grid.cells.origin.y, grid.cells.cell_size, y);
       for (std::uint32_t x = range.x0; x <= range.x1; ++x) {
         const AxisDistances dx(ball.centre.x, grid.cells.origin.x, grid.cells.cell_size, x);
-        if (dx.nearest_squared + dy.nearest_squared + dz.nearest_squared > outer * outer) continue;
+        if constexpr (Shape::kHasRoof) {
+          if (!is_in_reach(ball, x, y, z)) continue;
+        } else {
+          if (dx.nearest_squared + dy.nearest_squared + dz.nearest_squared > outer * outer) continue;
+        }
         const std::size_t cell = grid.cells.index(x, y, z);
         const bool inside = dx.farthest_squared + dy.farthest_squared + dz.farthest_squared <= inner * inner;
         if (pass == EnterPass::mark_inside_and_count) {
           if (inside) {
-            grid.heads[cell] = BallGridView::kInsideBit | id;
+            grid.heads[cell] = BallGridView<Shape>::kInsideBit | id;
           } else {
             ++entry;
           }
         } else if (!inside) {
           const std::uint32_t head = atomic_load(grid.heads[cell]);
-          if (head == BallGridView::kEmpty || (head & BallGridView::kInsideBit) == 0) {
+          if (head == BallGridView<Shape>::kEmpty || (head & BallGridView<Shape>::kInsideBit) == 0) {
             grid.entries[entry].ball = id;
             grid.entries[entry].next = atomic_exchange(grid.heads[cell], entry);
             ++entry;
@@ -169,6 +204,15 @@ struct EnterLayer {
       }
     }
     if (pass == EnterPass::mark_inside_and_count) first_entries[i] = atomic_add(entry_count[0], entry);
+  }
+
+ private:
+  // Clearances change by no more than the way from the cell's middle.
+  AERATE_HD bool is_in_reach(const Ball& ball, std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
+    constexpr double kHalfDiagonal = 0.86602540378443865 * (1 + 1e-9);
+    const Vec3d middle = grid.cells.origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * grid.cells.cell_size;
+    const double clearance = radius_beside(grid.shape.roof, middle, ball.centre, ball.radius, grid.gap).value;
+    return clearance - kHalfDiagonal * grid.cells.cell_size <= grid.reach;
   }
 };
 
@@ -197,13 +241,15 @@ class BallOrder {
   GrowingBuffer<Executor, Ball> ordered_;
 };
 
-template <typename Executor>
+template <typename Executor, typename Shape = BallShape>
 class BallGrid {
  public:
-  explicit BallGrid(const Executor& executor)
-      : executor_(executor), entry_count_(executor.template allocate<std::uint32_t>(1)) {}
+  explicit BallGrid(const Executor& executor, const Shape& shape = {})
+      : executor_(executor), entry_count_(executor.template allocate<std::uint32_t>(1)) {
+    view_.shape = shape;
+  }
 
-  BallGridView view() { return view_; }
+  BallGridView<Shape> view() { return view_; }
   double reach() const { return view_.reach; }
   double cell() const { return view_.cells.cell_size; }
 
@@ -224,7 +270,7 @@ class BallGrid {
       heads_ = executor_.template allocate<std::uint32_t>(count);
     }
     view_.heads = {heads_.view().data, count};
-    executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, BallGridView::kEmpty});
+    executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, BallGridView<Shape>::kEmpty});
     executor_.for_each_index(1, SetAll<std::uint32_t>{entry_count_.view(), 0});
     entries_.clear();
     for (std::size_t k = 0; k < groups_.size(); ++k) {
@@ -259,21 +305,25 @@ class BallGrid {
 
   void enter(std::size_t first, std::size_t last, double largest) {
     using namespace ball_grid_detail;
-    const double across = 2 * (largest + view_.gap + view_.reach) * view_.cells.cells_per_mm;
+    double across = 2 * (largest + view_.gap + view_.reach);
+    if constexpr (Shape::kHasRoof) {
+      across += view_.shape.head_start(largest) + view_.shape.head_start(view_.reach);
+    }
+    across *= view_.cells.cells_per_mm;
     const auto layers = static_cast<std::uint32_t>(min_of(across + 3, view_.cells.count_z * 1.0));
     const std::size_t at_a_time = max_of(most_at_a_time_ / layers, std::size_t{1});
     for (std::size_t begin = first; begin < last; begin += at_a_time) {
       const std::size_t count = min_of(at_a_time, last - begin) * layers;
       first_entries_.resize(executor_, count);
-      EnterLayer layer{view_,
-                       static_cast<std::uint32_t>(begin),
-                       layers,
-                       EnterPass::mark_inside_and_count,
-                       first_entries_.view(),
-                       entry_count_.view()};
+      EnterLayer<Shape> layer{view_,
+                              static_cast<std::uint32_t>(begin),
+                              layers,
+                              EnterPass::mark_inside_and_count,
+                              first_entries_.view(),
+                              entry_count_.view()};
       executor_.for_each_index(count, layer);
       const std::uint32_t entries = executor_.download(View<const std::uint32_t>(entry_count_.view())).at(0);
-      if (entries >= BallGridView::kInsideBit) {
+      if (entries >= BallGridView<Shape>::kInsideBit) {
         throw std::length_error("ball grid: more than 2^31 - 1 entries");
       }
       entries_.resize(executor_, entries);
@@ -285,7 +335,7 @@ class BallGrid {
   }
 
   const Executor& executor_;
-  BallGridView view_;
+  BallGridView<Shape> view_;
   std::size_t most_at_a_time_ = 1;
   std::vector<Group> groups_;
   typename Executor::template Buffer<std::uint32_t> heads_, entry_count_;

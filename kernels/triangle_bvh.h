@@ -69,45 +69,60 @@ struct TriangleBvhView {
 
   // The same where some facet and its distance are known already: `best` if no facet is nearer.
   AERATE_HD NearestFacet nearer_than(Vec3d p, NearestFacet best) const {
+    DistanceMetric metric{p, best, facets};
+    walk(metric);
+    return metric.best;
+  }
+
+  // The walk itself, for any measure of nearness: `metric.bound(box)` is at most what the metric makes of
+  // each facet in the box, `metric.visit(i)` looks at a facet, `metric.limit()` is the least value so far.
+  template <typename Metric>
+  AERATE_HD void walk(Metric& metric) const {
     std::uint32_t node = 1;
     // Bit k: the sibling of the ancestor k levels up is still to be visited.
     std::uint64_t pending = 0;
     while (true) {
       bool descend = false;
       if (node < first_leaf) {
-        const double left = distance_squared_to_box(p, boxes[2 * node]);
-        const double right = distance_squared_to_box(p, boxes[2 * node + 1]);
+        const double left = metric.bound(boxes[2 * node]);
+        const double right = metric.bound(boxes[2 * node + 1]);
         const bool right_first = right < left;
-        if ((right_first ? right : left) < best.distance_squared) {
-          const bool both = (right_first ? left : right) < best.distance_squared;
+        if ((right_first ? right : left) < metric.limit()) {
+          const bool both = (right_first ? left : right) < metric.limit();
           pending = (pending << 1) | (both ? 1u : 0u);
           node = 2 * node + (right_first ? 1 : 0);
           descend = true;
         }
       } else {
-        visit_leaf(p, node, best);
+        const std::uint32_t first = (node - first_leaf) * kLeafFacets;
+        const std::uint32_t last = min_of(first + kLeafFacets, static_cast<std::uint32_t>(facets.size));
+        for (std::uint32_t i = first; i < last; ++i) metric.visit(i);
       }
       while (!descend) {
-        if (pending == 0) return best;
+        if (pending == 0) return;
         const int levels = count_trailing_zeros(pending);
         node = (node >> levels) ^ 1u;
         pending = (pending >> levels) & ~std::uint64_t{1};
-        descend = distance_squared_to_box(p, boxes[node]) < best.distance_squared;
+        descend = metric.bound(boxes[node]) < metric.limit();
       }
     }
   }
 
  private:
-  AERATE_HD void visit_leaf(Vec3d p, std::uint32_t node, NearestFacet& best) const {
-    const std::uint32_t first = (node - first_leaf) * kLeafFacets;
-    const std::uint32_t last = min_of(first + kLeafFacets, static_cast<std::uint32_t>(facets.size));
-    for (std::uint32_t i = first; i < last; ++i) {
+  struct DistanceMetric {
+    Vec3d p;
+    NearestFacet best;
+    View<const Facet> facets;
+
+    AERATE_HD double bound(const Box3f& box) const { return distance_squared_to_box(p, box); }
+    AERATE_HD double limit() const { return best.distance_squared; }
+    AERATE_HD void visit(std::uint32_t i) {
       // Most facets of a leaf are farther than the best so far, as their boxes tell at a fifth of the cost.
-      if (distance_squared_to_box(p, box_of(facets[i])) >= best.distance_squared) continue;
+      if (bound(box_of(facets[i])) >= best.distance_squared) return;
       const double distance_squared = distance_squared_to_facet(p, facets[i]);
       if (distance_squared < best.distance_squared) best = {distance_squared, i};
     }
-  }
+  };
 };
 
 namespace triangle_bvh_detail {

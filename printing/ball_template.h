@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
+#include "core/error.h"
 #include "core/mesh.h"
-#include "core/solid.h"
 #include "kernels/sphere.h"
 
-// How the balls of a plan become shells: triangulations of the unit sphere, made once from a level set and
-// then moved and scaled into place.
+// Triangulations of the unit sphere, made once from a level set, to be moved and scaled into the place of
+// each void (void_surface.h).
 
 namespace aerate {
 
@@ -34,14 +34,15 @@ std::optional<BallTemplate> project_onto_ball(const Mesh& surface, Vec3d centre)
 // nullopt if the result fails the checks of `project_onto_ball`.
 std::optional<BallTemplate> relax(BallTemplate ball);
 
-// The outer surface and the balls' as voids, facing inward, by a template for each. All of a void's surface
-// lies within its ball. Throws FailureError for more vertices than 32 bits can count.
-Solid assemble(Mesh outer, std::span<const Sphere> balls, std::span<const BallTemplate* const> templates);
+// A void keeps at least this share of its planned volume, however coarse its surface.
+inline constexpr double kLeastVolumeShare = 0.9;
 
 // Templates of increasing refinement, each made when it is first asked for: OpenVDB level sets of balls whose
 // radius grows from level to level by 5 %, measured in voxels.
 class BallLadder {
  public:
+  static constexpr std::size_t kLevelCount = 95;  // the last has about 1.1 million triangles
+
   BallLadder();
   ~BallLadder();
 
@@ -52,6 +53,9 @@ class BallLadder {
 
   // Makes the levels that `level_for` will probably ask for, in parallel.
   void prepare(std::span<const Sphere> balls, double tolerance);
+
+  // Of any level below kLevelCount, made if it is not yet; null if there is none at this refinement.
+  const BallTemplate* find(std::size_t level);
 
   // Of a level that `level_for` has returned.
   const BallTemplate& operator[](std::size_t level) const { return *levels_[level]->ball; }
@@ -64,5 +68,8 @@ class BallLadder {
 
   std::vector<std::unique_ptr<Level>> levels_;
 };
+
+// The error of `level_for`.
+FailureError too_many_triangles(const Sphere& ball, double tolerance);
 
 }  // namespace aerate

@@ -4,24 +4,15 @@
 #include <cmath>
 #include <vector>
 
-#include "printing/ball_template.h"
+#include "printing/void_surface.h"
 
 namespace aerate {
 namespace {
 
-// The level of each ball of the plan.
-std::vector<std::size_t> choose_levels(BallLadder& ladder, const VoidPlan& plan, double tolerance) {
-  ladder.prepare(plan.spheres, tolerance);
-  std::vector<std::size_t> levels;
-  levels.reserve(plan.spheres.size());
-  for (const Sphere& ball : plan.spheres) levels.push_back(ladder.level_for(ball, tolerance));
-  return levels;
-}
-
-std::size_t count_triangles(BallLadder& ladder, const VoidPlan& plan, double tolerance) {
+std::size_t count_triangles(VoidTemplates& templates, const VoidPlan& plan, double tolerance) {
   std::size_t count = 0;
-  for (const std::size_t level : choose_levels(ladder, plan, tolerance)) {
-    count += ladder[level].triangles.size();
+  for (const VoidTemplate& chosen : templates.choose(plan.spheres, tolerance)) {
+    count += chosen.triangle_count();
   }
   return count;
 }
@@ -30,28 +21,24 @@ std::size_t count_triangles(BallLadder& ladder, const VoidPlan& plan, double tol
 
 Solid carve_keeping_surface(Mesh outer, const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) {
   monitor.check_interrupted();
-  BallLadder ladder;
-  const std::vector<std::size_t> levels = choose_levels(ladder, plan, options.tolerance);
+  VoidTemplates templates(plan.roof);
+  const std::vector<VoidTemplate> chosen = templates.choose(plan.spheres, options.tolerance);
   monitor.check_interrupted();
-
-  std::vector<const BallTemplate*> templates;
-  templates.reserve(levels.size());
-  for (const std::size_t level : levels) templates.push_back(&ladder[level]);
-  return assemble(std::move(outer), plan.spheres, templates);
+  return assemble(std::move(outer), plan, chosen);
 }
 
 std::size_t estimate_void_triangles(const VoidPlan& plan, const CarveOptions& options) {
-  BallLadder ladder;
-  return count_triangles(ladder, plan, options.tolerance);
+  VoidTemplates templates(plan.roof);
+  return count_triangles(templates, plan, options.tolerance);
 }
 
 std::optional<double> loosen_tolerance(const VoidPlan& plan, const CarveOptions& options,
                                        std::size_t max_triangles) {
-  BallLadder ladder;
+  VoidTemplates templates(plan.roof);
   const auto fits = [&](double tolerance) {
-    return count_triangles(ladder, plan, tolerance) <= max_triangles;
+    return count_triangles(templates, plan, tolerance) <= max_triangles;
   };
-  // At a tolerance of its radius a ball has its coarsest surface. Coarse levels are tried first, so that none
+  // At a tolerance of its radius a void has its coarsest surface. Coarse levels are tried first, so that none
   // is made that is finer than needed.
   double coarse = options.tolerance;
   for (const Sphere& ball : plan.spheres) coarse = std::max(coarse, ball.radius);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "kernels/roof_distance.h"
 #include "printing/level_set.h"
 #include "printing/shells.h"
 
@@ -74,22 +75,47 @@ Vec3d mean_position(const Mesh& mesh) {
   return sum * (1.0 / static_cast<double>(mesh.positions.size()));
 }
 
-// For each sphere its shell, if there is one whose mean lies within half a voxel of the sphere's centre and
-// that reaches as far as the sphere does, give or take a voxel.
-std::vector<const VoidShell*> find_shells(std::span<const Sphere> spheres,
+// A void as balls along its spine (kernels/roof.h), half a voxel apart, as far as voxels can hold them: the
+// room that is kept for it. The first is the sphere itself.
+std::vector<Sphere> balls_of(const Sphere& sphere, const Roof& roof, double voxel_size) {
+  std::vector<Sphere> balls{sphere};
+  const double spine = roof.spine(sphere.radius);
+  const auto steps = static_cast<std::size_t>(std::ceil(2 * spine / voxel_size));
+  for (std::size_t i = 1; i <= steps; ++i) {
+    const double height = spine * static_cast<double>(i) / static_cast<double>(steps);
+    const double radius = sphere.radius - height * roof.sine;
+    if (radius < kSmallestVoidRadiusVoxels * voxel_size) break;
+    balls.push_back({sphere.centre + roof.up * height, radius, sphere.kind});
+  }
+  return balls;
+}
+
+double distance_to(const std::vector<Sphere>& balls, Vec3d p) {
+  double distance = std::numeric_limits<double>::infinity();
+  for (const Sphere& ball : balls) distance = std::min(distance, length(p - ball.centre) - ball.radius);
+  return distance;
+}
+
+// For each void its shell, if there is one whose mean lies within half a voxel of the void's spine and that
+// follows its balls, give or take a voxel.
+std::vector<const VoidShell*> find_shells(const std::vector<std::vector<Sphere>>& voids,
                                           const std::vector<VoidShell>& shells_by_x, double voxel_size) {
-  std::vector<const VoidShell*> found(spheres.size());
-  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
-    const Sphere& sphere = spheres[i];
+  std::vector<const VoidShell*> found(voids.size());
+  tbb::parallel_for(std::size_t{0}, voids.size(), [&](std::size_t i) {
+    const Vec3d foot = voids[i].front().centre, spine = voids[i].back().centre - foot;
     const double reach = voxel_size / 2;
-    auto shell = std::lower_bound(shells_by_x.begin(), shells_by_x.end(), sphere.centre.x - reach,
-                                  [](const VoidShell& s, double x) { return s.centre.x < x; });
-    for (; shell != shells_by_x.end() && shell->centre.x <= sphere.centre.x + reach; ++shell) {
-      if (length(shell->centre - sphere.centre) > reach) continue;
-      const bool fits =
-          std::all_of(shell->surface.positions.begin(), shell->surface.positions.end(), [&](const Vec3f& p) {
-            return std::abs(length(to_double(p) - sphere.centre) - sphere.radius) <= voxel_size;
-          });
+    auto shell =
+        std::lower_bound(shells_by_x.begin(), shells_by_x.end(), std::min(foot.x, foot.x + spine.x) - reach,
+                         [](const VoidShell& s, double x) { return s.centre.x < x; });
+    for (; shell != shells_by_x.end() && shell->centre.x <= std::max(foot.x, foot.x + spine.x) + reach;
+         ++shell) {
+      const Vec3d offset = shell->centre - foot;
+      const double extent = length_squared(spine);
+      const double along = extent > 0 ? std::clamp(dot(offset, spine) / extent, 0.0, 1.0) : 0.0;
+      if (length(offset - spine * along) > reach) continue;
+      const bool fits = std::all_of(
+          shell->surface.positions.begin(), shell->surface.positions.end(),
+          [&](const Vec3f& p) { return std::abs(distance_to(voids[i], to_double(p))) <= voxel_size; });
       if (fits) found[i] = &*shell;
     }
   });
@@ -128,7 +154,8 @@ FailureError runs_together(const VoidPlan& plan, std::size_t lost, double voxel_
   for (std::size_t i = 0; i < plan.spheres.size(); ++i) {
     if (i == lost) continue;
     const Sphere& other = plan.spheres[i];
-    gap = std::min(gap, length(other.centre - sphere.centre) - other.radius - sphere.radius);
+    gap = std::min(
+        gap, kernels::distance_between(plan.roof, sphere.centre, sphere.radius, other.centre, other.radius));
   }
   const bool neighbour_is_near = gap < 2 * voxel_size;
   const double voxel_wanted = neighbour_is_near ? std::max(gap, 0.0) / 2 : voxel_size / 2;
@@ -194,9 +221,15 @@ Solid ModelLevelSet::subtract(const VoidPlan& plan, const CarveOptions& options,
     if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size) throw too_small_for_voxels(plan, voxel_size);
   }
 
+  std::vector<std::vector<Sphere>> balls_by_void;
+  std::vector<Sphere> balls;
+  for (const Sphere& sphere : plan.spheres) {
+    balls_by_void.push_back(balls_of(sphere, plan.roof, voxel_size));
+    balls.insert(balls.end(), balls_by_void.back().begin(), balls_by_void.back().end());
+  }
   std::vector<VoidShell> shells;
   {
-    const LevelSet voids = LevelSet::of_balls(plan.spheres, voxel_size);
+    const LevelSet voids = LevelSet::of_balls(balls, voxel_size);
     monitor.check_interrupted();
     const LevelSet cut = impl_->level_set.minus(voids);
     monitor.check_interrupted();
@@ -209,7 +242,7 @@ Solid ModelLevelSet::subtract(const VoidPlan& plan, const CarveOptions& options,
                    [](const VoidShell& a, const VoidShell& b) { return a.centre.x < b.centre.x; });
   monitor.check_interrupted();
 
-  const std::vector<const VoidShell*> found = find_shells(plan.spheres, shells, voxel_size);
+  const std::vector<const VoidShell*> found = find_shells(balls_by_void, shells, voxel_size);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i] == nullptr) throw runs_together(plan, i, voxel_size);
   }

@@ -5,10 +5,15 @@
 #include <string>
 #include <string_view>
 
+#include "kernels/vec.h"
+
 namespace aerate::cli {
 
 // The finite number that is the whole text, if it is one.
 std::optional<double> parse_number(std::string_view text);
+
+// "+x", "-x", .., "-z" or "x,y,z" as a unit vector; nothing for other texts and for 0,0,0.
+std::optional<Vec3d> parse_direction(std::string_view text);
 
 // Accepts a number in [least, most], or in (0, most] with `least` absent; `unit` is for the message.
 CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit);

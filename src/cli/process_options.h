@@ -12,7 +12,7 @@ namespace aerate::cli {
 // Thrown while options are read for `--process list`: the processes are to be listed, and nothing else done.
 class ProcessListRequest : public CLI::Success {};
 
-// --process, --wall, --gap, --min-radius, --max-radius
+// --process, --wall, --gap, --min-radius, --max-radius, --overhang, --bridge, --up
 class ProcessOptions {
  public:
   ProcessOptions(CLI::App& command, const ConfigFile& config);
@@ -21,6 +21,8 @@ class ProcessOptions {
   ProcessChoice choice() const;
 
  private:
+  void add_roof_options(CLI::App& command);
+
   struct Given {
     Limit limit;
     double value = 0;
@@ -30,7 +32,9 @@ class ProcessOptions {
   const ConfigFile& config_;
   std::string process_ = "fdm";
   CLI::Option* process_option_ = nullptr;
-  std::array<Given, 4> given_;
+  std::array<Given, 6> given_;
+  std::string up_ = PrintDirection{}.name;
+  CLI::Option* up_option_ = nullptr;
 };
 
 }  // namespace aerate::cli

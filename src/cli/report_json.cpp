@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "cli/json_parts.h"
+#include "core/roof.h"
 #include "printing/strength.h"
 
 namespace aerate::cli {
@@ -44,10 +45,14 @@ Json json_of(const InputFacts& input) {
 }
 
 Json json_of(const PackingLimits& limits) {
+  const Roof& roof = limits.roof;
   return {{"wall_mm", limits.wall},
           {"gap_mm", limits.gap},
           {"min_radius_mm", limits.min_radius},
-          {"max_radius_mm", limits.max_radius}};
+          {"max_radius_mm", limits.max_radius},
+          {"overhang_degrees", roof.limits_ceilings() ? Json(overhang_degrees(roof)) : Json(nullptr)},
+          {"bridge_mm", roof.limits_ceilings() ? Json(roof.bridge()) : Json(nullptr)},
+          {"up", json_of(roof.up)}};
 }
 
 Json json_of(const ProcessChoice& choice) {
@@ -62,7 +67,8 @@ Json json_of(const ProcessChoice& choice) {
   return {{"name", choice.process.name},
           {"title", choice.process.title},
           {"drainage_needed", choice.process.drainage == Drainage::needed},
-          {"limits", origins}};
+          {"limits", origins},
+          {"up", {{"direction", choice.direction.name}, {"origin", choice.direction.origin}}}};
 }
 
 Json json_of(PackingMethod method, const DeviceUse& device, double density,
@@ -202,6 +208,15 @@ std::string to_json(const HollowReport& report) {
                    {"tolerance_used_mm", report.tolerance_used},
                    {"deviation_mm", output.void_deviation}};
   json["measured"] = json_of(output.clearances);
+  if (output.ceilings) {
+    json["ceilings"] = {
+        {"roofs", output.roof_count},
+        {"count", output.ceilings->count},
+        {"flatter_than_degrees", overhang_degrees(report.limits.roof) + kCeilingMarginDegrees},
+        {"widest_mm", output.ceilings->widest}};
+  } else {
+    json["ceilings"] = nullptr;
+  }
   json["volume"] = volume_of(report);
   json["modifiers"] = modifiers_of(report);
   json["centre_of_mass"] = {

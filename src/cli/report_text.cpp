@@ -77,11 +77,22 @@ void add_limits(Lines& lines, const ProcessChoice& choice) {
     std::string values;
     for (const LimitOrigin& limit : choice.origins) {
       if (limit.origin == origin)
-        values +=
-            fmt::format("{}{} {:.4g} mm", values.empty() ? "" : ", ", name_of(limit.limit), limit.value);
+        values += fmt::format("{}{} {:.4g} {}", values.empty() ? "" : ", ", name_of(limit.limit), limit.value,
+                              unit_of(limit.limit));
     }
     lines.add("", "{} ({})", values, origin);
   }
+}
+
+void add_ceilings(Lines& lines, const HollowReport& report) {
+  const OutputFacts& output = report.output;
+  if (!output.ceilings) return;
+  const Roof& roof = report.limits.roof;
+  lines.add("ceilings",
+            "{:.2f} mm wide at most (bridge {:g}, tolerance {:.3g}); {} of {} voids have roofs; up "
+            "is {} ({})",
+            output.ceilings->widest, roof.bridge(), report.tolerance_used, grouped(output.roof_count),
+            grouped(output.void_count), report.process.direction.name, report.process.direction.origin);
 }
 
 // "0.620 to 3.500 mm"
@@ -208,6 +219,7 @@ std::string to_text(const HollowReport& report) {
   add_volume(lines, report);
   lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", output.clearances.wall,
             report.limits.wall, gap_in_words(output.clearances), report.limits.gap);
+  add_ceilings(lines, report);
   if (!report.modifiers) add_balance(lines, report);
   add_material(lines, report);
   lines.add("output", "{}: {} ({} outside, {}), {}", output.path.filename().string(),
@@ -218,8 +230,9 @@ std::string to_text(const HollowReport& report) {
     lines.add("remeshed", "voxels of {:.3g} mm, at most {:.3g} mm from the model's surface",
               *report.voxel_size, *report.outer_deviation);
   }
-  lines.add("tolerance", "{:.3g} mm; void surfaces are at most {:.3g} mm inside their spheres",
-            report.tolerance_used, output.void_deviation);
+  lines.add("tolerance", "{:.3g} mm; void surfaces are at most {:.3g} mm inside their {}",
+            report.tolerance_used, output.void_deviation,
+            output.roof_count > 0 ? "spheres and roofs" : "spheres");
   add_stages(lines, report.stages);
   return lines.take();
 }

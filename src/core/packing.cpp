@@ -1,13 +1,11 @@
 #include "core/packing.h"
 
-#include <numbers>
-
 namespace aerate {
 
 double total_volume(const Packing& packing) {
-  double sum_of_cubes = 0;
-  for (const Sphere& sphere : packing.spheres) sum_of_cubes += sphere.radius * sphere.radius * sphere.radius;
-  return sum_of_cubes * 4.0 / 3.0 * std::numbers::pi;
+  double sum = 0;
+  for (const Sphere& sphere : packing.spheres) sum += void_volume(packing.limits.roof, sphere.radius);
+  return sum;
 }
 
 }  // namespace aerate

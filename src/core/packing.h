@@ -5,16 +5,19 @@
 #include <vector>
 
 #include "core/device.h"
+#include "kernels/roof.h"
 #include "kernels/sphere.h"
 
 namespace aerate {
 
-// What the spheres of a packing must obey; millimetres.
+// What the voids of a packing must obey; millimetres. Each void is a sphere with the roof that its radius
+// takes (kernels/roof.h), by default none.
 struct PackingLimits {
-  double wall = 0;        // least distance between a sphere and the model's surface
-  double gap = 0;         // least distance between two spheres
+  double wall = 0;        // least distance between a void and the model's surface
+  double gap = 0;         // least distance between two voids
   double min_radius = 0;  // smaller spheres are dropped
   double max_radius = 0;  // radius of the largest sphere
+  Roof roof = {};
 };
 
 // Why candidates of a packing were not kept; each candidate is counted once.
@@ -39,7 +42,7 @@ struct Packing {
   DeviceUse device;
 };
 
-// Sum of the spheres' volumes, mm3.
+// Sum of the voids' volumes, their roofs included, mm3.
 double total_volume(const Packing& packing);
 
 }  // namespace aerate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "core/error.h"
 #include "kernels/adaptive_cuda.h"
@@ -44,6 +45,7 @@ kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits,
   input.parameters.min_radius = limits.min_radius;
   input.parameters.max_radius = limits.max_radius;
   input.parameters.max_count = options.max_count;
+  input.parameters.roof = limits.roof;
   if (options.target_density < 1) {
     input.parameters.max_volume = options.target_density * input.volume;
   }
@@ -107,6 +109,22 @@ Packing packing_of(const kernels::AdaptiveResult& result, const PackingLimits& l
   return packing;
 }
 
+// Voids with roofs are packed on the CPU alone: their search takes more registers than a CUDA thread has.
+kernels::AdaptiveResult pack_with_roofs(const kernels::AdaptiveInput& input, const DeviceRequest& device,
+                                        DeviceUse& use) {
+  if (device.kind == DeviceRequest::Kind::cuda) {
+    throw UsageError("--device cuda: voids with roofs are packed on the CPU only",
+                     "leave out --device, or let no void need a roof: --max-radius " +
+                         fmt::format("{:g}", std::floor(input.parameters.roof.widest_ball * 100) / 100) +
+                         " or less");
+  }
+  const bool one_thread = device.kind == DeviceRequest::Kind::cpu_one_thread;
+  use = {"cpu", device.kind == DeviceRequest::Kind::automatic ? "voids with roofs are packed on the CPU only"
+                                                              : "asked for"};
+  return one_thread ? kernels::pack_adaptive_with_roofs(kernels::SerialExecutor{}, input)
+                    : kernels::pack_adaptive_with_roofs(kernels::TbbExecutor{}, input);
+}
+
 }  // namespace
 
 Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options,
@@ -115,6 +133,11 @@ Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const Adapt
   if (mesh.triangles.empty() || options.max_count == 0) return {{}, limits, {}, {}};
   const kernels::AdaptiveInput input = input_for(mesh, limits, options, monitor);
   DeviceUse use;
+  if (limits.roof.shapes(limits.max_radius)) {
+    Packing packing = packing_of(pack_with_roofs(input, device, use), limits);
+    packing.device = std::move(use);
+    return packing;
+  }
   const auto on_cpu = [&](DeviceRequest::Kind kind) {
     return kind == DeviceRequest::Kind::cpu_one_thread
                ? kernels::pack_adaptive(kernels::SerialExecutor{}, input)

@@ -9,8 +9,15 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include "kernels/roof_distance.h"
+
 namespace aerate {
 namespace {
+
+// How much nearer to another sphere a roof may bring one.
+double head_start(const Roof& roof, double radius) {
+  return (1 - roof.sine) * roof.spine(radius);
+}
 
 // The spheres of one radius class, sorted by the cell of their centre. A cell is as wide as the farthest that
 // two spheres of the class can be apart and still be a pair, so that neighbours are in adjacent cells.
@@ -98,7 +105,7 @@ Classes classify(std::span<const Sphere> spheres, double reach) {
 
 }  // namespace
 
-std::vector<SpherePair> find_pairs_within(std::span<const Sphere> spheres, double reach) {
+std::vector<SpherePair> find_pairs_within(std::span<const Sphere> spheres, double reach, const Roof& roof) {
   const Classes classes = classify(spheres, reach);
   tbb::enumerable_thread_specific<std::vector<SpherePair>> found;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, spheres.size(), 256), [&](const auto& range) {
@@ -108,10 +115,12 @@ std::vector<SpherePair> find_pairs_within(std::span<const Sphere> spheres, doubl
       const std::size_t own_class = classes.of_sphere[i];
       // The smaller of a pair looks among the larger: these have wide cells, so 27 of them are all there is.
       for (std::size_t k = own_class; k < classes.by_radius.size(); ++k) {
-        const double distance = sphere.radius + classes.by_radius[k].largest_radius() + reach;
+        const double largest = classes.by_radius[k].largest_radius();
+        const double distance = sphere.radius + largest + reach + head_start(roof, largest);
         classes.by_radius[k].for_each_near(sphere.centre, distance, [&](std::uint32_t j) {
           if (k == own_class && j <= i) return;
-          const double gap = length(spheres[j].centre - sphere.centre) - sphere.radius - spheres[j].radius;
+          const double gap = kernels::distance_between(roof, sphere.centre, sphere.radius, spheres[j].centre,
+                                                       spheres[j].radius);
           const auto self = static_cast<std::uint32_t>(i);
           if (gap < reach) pairs.push_back({std::min(self, j), std::max(self, j), gap});
         });

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/roof.h"
 #include "kernels/sphere.h"
 
 namespace aerate {
@@ -13,9 +14,11 @@ struct SpherePair {
   double gap;                   // distance between the two surfaces, mm; negative where they overlap
 };
 
-// All pairs of spheres nearer to each other than `reach` mm, ordered by (first, second). Spheres are binned
-// by radius (powers of two), each class in a hashed grid of its own, so that few large spheres among many
-// small ones cost nothing: O(n) for a packing, on all threads, the same for any number of them.
-std::vector<SpherePair> find_pairs_within(std::span<const Sphere> spheres, double reach);
+// All pairs of spheres, with the roofs that they take, nearer to each other than `reach` mm, ordered by
+// (first, second). Spheres are binned by radius (powers of two), each class in a hashed grid of its own, so
+// that few large spheres among many small ones cost nothing: O(n) for a packing, on all threads, the same for
+// any number of them.
+std::vector<SpherePair> find_pairs_within(std::span<const Sphere> spheres, double reach,
+                                          const Roof& roof = {});
 
 }  // namespace aerate

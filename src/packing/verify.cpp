@@ -5,6 +5,8 @@
 #include <limits>
 #include <tbb/parallel_for.h>
 
+#include "kernels/roof_distance.h"
+#include "kernels/roofed_surface.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/winding.h"
 #include "packing/sphere_pairs.h"
@@ -37,6 +39,31 @@ double distance_of(const kernels::TriangleBvhView& bvh, Vec3d point, double limi
   return std::sqrt(bvh.nearest(point, limit * limit).distance_squared);
 }
 
+// Distance of each void to the surface.
+std::vector<double> walls_of(const Mesh& mesh, std::span<const Sphere> spheres, const Roof& roof) {
+  const kernels::HostTriangleBvh bvh(mesh.positions, mesh.triangles);
+  std::vector<double> walls(spheres.size());
+  tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
+    walls[i] = kernels::distance_to_surface(bvh.view(), roof, spheres[i].centre, spheres[i].radius);
+  });
+  return walls;
+}
+
+// The largest radius that the wall allows; of a sphere that keeps the wall, something not below its own.
+double radius_allowed_by_wall(const kernels::TriangleBvhView& bvh, const Sphere& sphere,
+                              const PackingLimits& limits) {
+  if (limits.roof.shapes(sphere.radius)) {
+    return kernels::widest_void(bvh, limits.roof, sphere.centre, limits.wall).radius;
+  }
+  const double needed = sphere.radius + limits.wall;
+  return distance_of(bvh, sphere.centre, needed * (1 + 1e-9)) - limits.wall;
+}
+
+// The largest radius of `smaller` that the gap to `larger` allows.
+double radius_allowed_by_gap(Vec3d smaller, Vec3d larger, double larger_radius, const PackingLimits& limits) {
+  return kernels::radius_beside(limits.roof, smaller, larger, larger_radius, limits.gap).value;
+}
+
 }  // namespace
 
 Packing verify_packing(const Mesh& mesh, Packing packing) {
@@ -49,23 +76,24 @@ Packing verify_packing(const Mesh& mesh, Packing packing) {
   std::vector<double> radii(packing.spheres.size());
   tbb::parallel_for(std::size_t{0}, packing.spheres.size(), [&](std::size_t i) {
     const Sphere& sphere = packing.spheres[i];
-    const double needed = sphere.radius + limits.wall;
-    const double distance = distance_of(bvh.view(), sphere.centre, needed * (1 + 1e-9));
     const bool is_inside = winding.view().winding_number(sphere.centre) == 1;
-    radii[i] = is_inside ? checked_radius(sphere, distance - limits.wall, tolerance) : 0.0;
+    radii[i] = is_inside
+                   ? checked_radius(sphere, radius_allowed_by_wall(bvh.view(), sphere, limits), tolerance)
+                   : 0.0;
   });
-  for (const SpherePair& pair : find_pairs_within(packing.spheres, limits.gap)) {
+  for (const SpherePair& pair : find_pairs_within(packing.spheres, limits.gap, limits.roof)) {
     double& first = radii[pair.first];
     double& second = radii[pair.second];
     if (first == 0 || second == 0) continue;
-    const double distance = length(packing.spheres[pair.first].centre - packing.spheres[pair.second].centre);
-    const double room = distance - limits.gap;
-    if (first + second <= room) continue;
     // The smaller gives way; of two equal ones, the later.
-    double& smaller = first < second ? first : second;
+    const bool first_gives = first < second;
+    double& smaller = first_gives ? first : second;
     const double larger = std::max(first, second);
-    const double excess = smaller + larger - room;
-    smaller = excess <= tolerance ? std::max(just_below(room - larger), 0.0) : 0.0;
+    const Vec3d centre = packing.spheres[first_gives ? pair.first : pair.second].centre;
+    const Vec3d other = packing.spheres[first_gives ? pair.second : pair.first].centre;
+    const double allowed = radius_allowed_by_gap(centre, other, larger, limits);
+    if (smaller <= allowed) continue;
+    smaller = smaller - allowed <= tolerance ? std::max(just_below(allowed), 0.0) : 0.0;
   }
 
   std::size_t kept = 0;
@@ -90,13 +118,13 @@ std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing)
   std::vector<Vec3d> centres;
   centres.reserve(packing.spheres.size());
   for (const Sphere& sphere : packing.spheres) centres.push_back(sphere.centre);
-  const std::vector<double> distances = distances_to_surface(mesh, centres);
+  const std::vector<double> walls = walls_of(mesh, packing.spheres, packing.limits.roof);
   const std::vector<int> winding =
       kernels::HostWinding(mesh.positions, mesh.triangles).winding_numbers(centres);
 
   std::optional<PackingFault> first;
   for (std::size_t i = 0; i < centres.size() && !first; ++i) {
-    const double wall = distances[i] - packing.spheres[i].radius;
+    const double wall = walls[i];
     if (winding[i] != 1) {
       const auto kind = winding[i] == 0 ? PackingFault::Kind::outside : PackingFault::Kind::overlapped_region;
       first = PackingFault{kind, i, i, wall};
@@ -104,7 +132,7 @@ std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing)
       first = PackingFault{PackingFault::Kind::wall, i, i, wall};
     }
   }
-  for (const SpherePair& pair : find_pairs_within(packing.spheres, packing.limits.gap)) {
+  for (const SpherePair& pair : find_pairs_within(packing.spheres, packing.limits.gap, packing.limits.roof)) {
     if (pair.gap >= packing.limits.gap - tolerance) continue;
     if (!first || pair.second < first->sphere) {
       first = PackingFault{PackingFault::Kind::gap, pair.second, pair.first, pair.gap};
@@ -117,25 +145,17 @@ std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d
   return kernels::HostTriangleBvh(mesh.positions, mesh.triangles).distances(points);
 }
 
-Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres) {
+Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres, const Roof& roof) {
   Clearances clearances{kInfinity, std::nullopt};
   if (spheres.empty()) return clearances;
-  std::vector<Vec3d> centres;
-  centres.reserve(spheres.size());
   double smallest_radius = kInfinity;
-  for (const Sphere& sphere : spheres) {
-    centres.push_back(sphere.centre);
-    smallest_radius = std::min(smallest_radius, sphere.radius);
-  }
-  const std::vector<double> distances = distances_to_surface(mesh, centres);
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    clearances.wall = std::min(clearances.wall, distances[i] - spheres[i].radius);
-  }
+  for (const Sphere& sphere : spheres) smallest_radius = std::min(smallest_radius, sphere.radius);
+  for (const double wall : walls_of(mesh, spheres, roof)) clearances.wall = std::min(clearances.wall, wall);
   if (spheres.size() < 2) return clearances;
   // Widen the search until a pair is in it.
   for (double reach = std::max(smallest_radius, 1e-3);; reach *= 2) {
     double gap = kInfinity;
-    for (const SpherePair& pair : find_pairs_within(spheres, reach)) gap = std::min(gap, pair.gap);
+    for (const SpherePair& pair : find_pairs_within(spheres, reach, roof)) gap = std::min(gap, pair.gap);
     if (gap < kInfinity) {
       clearances.gap = gap;
       return clearances;

@@ -7,6 +7,7 @@
 
 #include "core/mesh.h"
 #include "core/packing.h"
+#include "kernels/roof.h"
 
 namespace aerate {
 
@@ -37,13 +38,14 @@ std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing)
 // Exact (fp64) distance from each point to the surface of `mesh`, mm.
 std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d> points);
 
-// Smallest clearances of a set of balls, mm: to the surface (infinite without balls), and between two balls
-// (nullopt for fewer than two). Negative where something overlaps.
+// Smallest clearances of a set of balls, with the roofs that they take (a little less than the real ones
+// above a roof, as kernels/roof_distance.h says), mm: to the surface (infinite without balls), and between
+// two balls (nullopt for fewer than two). Negative where something overlaps.
 struct Clearances {
   double wall = 0;
   std::optional<double> gap;
 };
-Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres);
+Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres, const Roof& roof = {});
 
 // The largest ball inside the model where its winding number is 1, touching the surface (no wall); radius 0
 // if there is none. For the message when nothing fits under the limits: accurate to about 1 %.

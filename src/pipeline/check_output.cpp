@@ -118,8 +118,11 @@ Clearances measure_limits(const Mesh& outer, const std::vector<Sphere>& balls,
                           const ExpectedOutput& expected) {
   const PackingLimits& limits = expected.limits;
   if (expected.surface == OuterSurface::remeshed) {
-    const PackingLimits written{
-        .wall = 0, .gap = 0, .min_radius = 0, .max_radius = limits.max_radius + limits.gap};
+    const PackingLimits written{.wall = 0,
+                                .gap = 0,
+                                .min_radius = 0,
+                                .max_radius = limits.max_radius + limits.gap,
+                                .roof = limits.roof};
     Packing measured;
     measured.spheres = balls;
     measured.limits = written;
@@ -128,12 +131,23 @@ Clearances measure_limits(const Mesh& outer, const std::vector<Sphere>& balls,
       fail_check("{} voids lie where the model is not solid once",
                  verified.statistics.dropped_by_verification + verified.statistics.shrunk_by_verification);
   }
-  const Clearances clearances = measure_clearances(outer, balls);
+  const Clearances clearances = measure_clearances(outer, balls, limits.roof);
   if (clearances.wall < limits.wall - kLimitError)
     fail_check("the wall is {:.9g} mm, the limit {:.9g} mm", clearances.wall, limits.wall);
   if (clearances.gap && *clearances.gap < limits.gap - kLimitError)
     fail_check("the gap is {:.9g} mm, the limit {:.9g} mm", *clearances.gap, limits.gap);
   return clearances;
+}
+
+std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const ExpectedOutput& expected,
+                                                 Monitor& monitor) {
+  const Roof& roof = expected.limits.roof;
+  if (!roof.limits_ceilings()) return std::nullopt;
+  const Ceilings ceilings = measure_ceilings(read_back, expected.solid.void_shells, roof, monitor);
+  if (ceilings.widest > roof.bridge() + expected.tolerance)
+    fail_check("a ceiling is {:.4g} mm wide, the bridge {:.4g} mm and the tolerance {:.4g} mm",
+               ceilings.widest, roof.bridge(), expected.tolerance);
+  return ceilings;
 }
 
 std::optional<Vec3d> centre_of_mass(double volume, Vec3d first_moment, const Inspection& inspection) {
@@ -190,6 +204,10 @@ OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected, 
   facts.smallest_radius = voids.smallest_radius;
   facts.largest_radius = voids.largest_radius;
   facts.void_deviation = voids.depth;
+  facts.roof_count = static_cast<std::size_t>(
+      std::count_if(expected.plan.spheres.begin(), expected.plan.spheres.end(),
+                    [&](const Sphere& planned) { return expected.plan.roof.shapes(planned.radius); }));
+  facts.ceilings = measure_limited_ceilings(read_back, expected, monitor);
   facts.clearances = measure_limits(outer, voids.balls, expected);
   monitor.check_interrupted();
 

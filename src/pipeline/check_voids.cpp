@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <fmt/format.h>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "kernels/point_triangle.h"
+#include "kernels/roof_distance.h"
 #include "pipeline/check_failure.h"
 #include "pipeline/polled_loop.h"
 #include "pipeline/shell_topology.h"
@@ -27,9 +27,51 @@ constexpr double kSummationError = 1e-9;
 // Voids between two questions to the monitor: about ten million triangles at the very most.
 constexpr std::size_t kVoidsPerPiece = 4096;
 
-double ball_volume(double radius) {
-  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-}
+// The planned shape of a void, as the bound that its surface must keep.
+class PlannedShape {
+ public:
+  PlannedShape(const Roof& roof, const Sphere& planned)
+      : roof_(roof), planned_(planned), has_roof_(roof.shapes(planned.radius)) {}
+
+  // Takes a vertex in.
+  void hold(Vec3f p) {
+    const Vec3d offset = to_double(p) - planned_.centre;
+    farthest_squared_ = std::max(farthest_squared_, length_squared(offset));
+    if (has_roof_) radius_ = std::max(radius_, least_radius_holding(roof_, planned_.centre, to_double(p)));
+  }
+  // The least radius whose void holds all that were taken in.
+  double radius() const {
+    return has_roof_ && roof_.shapes(radius_) ? radius_ : std::sqrt(farthest_squared_);
+  }
+
+  // How deep inside the shape a facet lies at its deepest; where there is a roof, at most.
+  double depth(const kernels::Facet& facet) const {
+    if (!has_roof_)
+      return planned_.radius - std::sqrt(kernels::distance_squared_to_facet(planned_.centre, facet));
+    const double lowest =
+        std::min({height(facet.a), height(facet.b), height(facet.c)});  // which is below the flat top
+    return std::min(roof_.top(planned_.radius) - lowest,
+                    kernels::lateral_depth(roof_, planned_.centre, planned_.radius, facet));
+  }
+
+  double volume() const { return void_volume(roof_, planned_.radius); }
+  // Of what is left where the surface is `tolerance` inside: no less than the shape scaled about its centre,
+  // which is that far from its nearest side.
+  double volume_within(double tolerance) const {
+    const double nearest = std::min(planned_.radius, roof_.top(planned_.radius));
+    const double scale = std::max(0.0, 1 - tolerance / nearest);
+    return volume() * scale * scale * scale;
+  }
+
+ private:
+  double height(Vec3f p) const { return dot(to_double(p) - planned_.centre, roof_.up); }
+
+  const Roof& roof_;
+  const Sphere& planned_;
+  bool has_roof_;
+  double farthest_squared_ = 0;
+  double radius_ = 0;
+};
 
 // Throws unless the shells follow the outer surface and each other up to the last triangle.
 void require_shells_in_order(const Mesh& mesh, const Solid& solid) {
@@ -62,10 +104,10 @@ VertexRange vertices_of(std::span<const Triangle> triangles) {
   return range;
 }
 
-MeasuredVoid measure_void(const Mesh& mesh, std::span<const Triangle> triangles, const Sphere& planned) {
+MeasuredVoid measure_void(const Mesh& mesh, std::span<const Triangle> triangles, const Sphere& planned,
+                          PlannedShape& shape) {
   MeasuredVoid measured;
-  double farthest_squared = 0;
-  double nearest_squared = std::numeric_limits<double>::infinity();
+  double depth = 0;
   double volume_times_6 = 0;
   Vec3d moment_times_24{0, 0, 0};
   for (const Triangle& t : triangles) {
@@ -73,32 +115,32 @@ MeasuredVoid measure_void(const Mesh& mesh, std::span<const Triangle> triangles,
     const Vec3d a = to_double(facet.a) - planned.centre;
     const Vec3d b = to_double(facet.b) - planned.centre;
     const Vec3d c = to_double(facet.c) - planned.centre;
-    farthest_squared = std::max({farthest_squared, length_squared(a), length_squared(b), length_squared(c)});
-    nearest_squared = std::min(nearest_squared, kernels::distance_squared_to_facet(planned.centre, facet));
+    for (const Vec3f& p : {facet.a, facet.b, facet.c}) shape.hold(p);
+    depth = std::max(depth, shape.depth(facet));
     // Inward triangles: the determinant is negative.
     const double determinant = -dot(a, cross(b, c));
     volume_times_6 += determinant;
     moment_times_24 = moment_times_24 + (a + b + c) * determinant;
   }
-  measured.ball = {planned.centre, std::sqrt(farthest_squared), planned.kind};
+  measured.ball = {planned.centre, shape.radius(), planned.kind};
   measured.volume = volume_times_6 / 6.0;
-  measured.depth = planned.radius - std::sqrt(nearest_squared);
+  measured.depth = depth;
   measured.first_moment = moment_times_24 * (1.0 / 24.0) + planned.centre * measured.volume;
   return measured;
 }
 
 std::optional<std::string> flaw_of_measures(const MeasuredVoid& measured, const Sphere& planned,
-                                            double tolerance) {
+                                            const PlannedShape& shape, double tolerance) {
   const double slack = kDistanceError * planned.radius;
   if (measured.volume <= 0) return "it is not oriented inward";
   if (measured.ball.radius > planned.radius + slack)
     return fmt::format("it has radius {:.9g} mm, planned were {:.9g} mm", measured.ball.radius,
                        planned.radius);
   if (measured.depth > tolerance + slack)
-    return fmt::format("it stays {:.4g} mm inside its ball, the tolerance is {:.4g} mm", measured.depth,
-                       tolerance);
-  const double least = ball_volume(std::max(0.0, planned.radius - tolerance));
-  const double most = ball_volume(planned.radius);
+    return fmt::format("it stays {:.4g} mm inside its planned shape, the tolerance is {:.4g} mm",
+                       measured.depth, tolerance);
+  const double least = shape.volume_within(tolerance);
+  const double most = shape.volume();
   if (measured.volume < least * (1 - kSummationError) || measured.volume > most * (1 + kSummationError))
     return fmt::format("it has {:.6g} mm3, planned were {:.6g} mm3", measured.volume, most);
   return std::nullopt;
@@ -129,8 +171,9 @@ std::vector<MeasuredVoid> check_voids(const Mesh& mesh, const Solid& solid, cons
     if (!finding.vertices.can_be_own(triangles.size())) return;
     finding.flaw = flaw_of_sphere_shell(triangles);
     if (finding.flaw) return;
-    voids[i] = measure_void(mesh, triangles, plan.spheres[i]);
-    finding.flaw = flaw_of_measures(voids[i], plan.spheres[i], tolerance);
+    PlannedShape shape(plan.roof, plan.spheres[i]);
+    voids[i] = measure_void(mesh, triangles, plan.spheres[i], shape);
+    finding.flaw = flaw_of_measures(voids[i], plan.spheres[i], shape, tolerance);
   });
 
   // A shell that shares no vertex with what came before uses exactly the next numbers.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/upright.h"
 #include "core/void_plan.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
@@ -28,7 +29,13 @@ Solid carve(PreparedModel& model, const VoidPlan& plan, const CarveOptions& opti
   return carve_keeping_surface(model.mesh, plan, options, monitor);
 }
 
-Balance balance_of(const Mesh& outer, const OutputFacts& output) {
+Balance balance_of(const Mesh& outer, const OutputFacts& output, const UprightFrame& frame) {
+  if (!frame.is_the_models_own()) {
+    OutputFacts turned = output;
+    for (auto* centre : {&turned.centre_of_mass_before, &turned.centre_of_mass_after})
+      if (*centre) *centre = frame.to_frame(**centre);
+    return balance_of(turned_upright(outer, frame), turned, UprightFrame({0, 0, 1}));
+  }
   Balance balance;
   balance.stiffness = stiffness_upper_bound(output.volume_after / output.volume_before);
   if (output.centre_of_mass_before)
@@ -40,10 +47,10 @@ Balance balance_of(const Mesh& outer, const OutputFacts& output) {
 void warn_of_tipping(const HollowReport& report, Monitor& monitor) {
   const Vec3d centre = *report.output.centre_of_mass_after;
   monitor.notice(
-      fmt::format("the model stood, and with these voids it tips over: its centre of mass, now above "
-                  "({:.1f}, {:.1f}) mm, "
+      fmt::format("the model stood, and with these voids it tips over: its centre of mass, now at "
+                  "({:.1f}, {:.1f}, {:.1f}) mm, "
                   "is {:.1f} mm outside of what it stands on",
-                  centre.x, centre.y, -*report.balance.margin_after));
+                  centre.x, centre.y, centre.z, -*report.balance.margin_after));
 }
 
 }  // namespace
@@ -84,7 +91,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   report.packing_device = packing.device;
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
-  const VoidPlan plan{packing.spheres};
+  const VoidPlan plan{packing.spheres, request.limits.roof};
   const std::size_t outer_triangles = model.mesh.triangles.size();
   report.tolerance_used = tolerance_for(plan, options.tolerance, outer_triangles, options.max_triangles);
   if (report.tolerance_used > options.tolerance)
@@ -118,7 +125,9 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
                                log);
   report.output.path = options.output;
   report.output.file_bytes = std::filesystem::file_size(pending.file().path());
-  if (makes_voids) report.balance = balance_of(model.mesh, report.output);
+  if (makes_voids) {
+    report.balance = balance_of(model.mesh, report.output, UprightFrame(request.limits.roof.up));
+  }
   if (report.balance.tips_over()) warn_of_tipping(report, log);
   log.check_interrupted();
   pending.file().commit();

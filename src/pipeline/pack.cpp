@@ -32,6 +32,10 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
   const std::string which =
       fmt::format("{}: sphere {} (radius {:.4g} mm at ({:.3f}, {:.3f}, {:.3f}) mm)", file, fault->sphere + 1,
                   sphere.radius, sphere.centre.x, sphere.centre.y, sphere.centre.z);
+  const bool has_roof = request.limits.roof.shapes(sphere.radius) ||
+                        (fault->kind == PackingFault::Kind::gap &&
+                         request.limits.roof.shapes(packing.spheres[fault->other].radius));
+  const char* const roof = has_roof ? " with the roofs that --bridge and --overhang ask for" : "";
   switch (fault->kind) {
     case PackingFault::Kind::outside:
       throw InputError(which + " is outside the model",
@@ -40,15 +44,29 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
       throw InputError(which + " is where parts of the model overlap, and a slicer would fill it",
                        "unite the parts first, or pack this model anew");
     case PackingFault::Kind::wall:
-      throw InputError(fmt::format("{} leaves a wall of {:.4g} mm, the limit is {:.4g} mm", which,
-                                   fault->clearance, request.limits.wall),
-                       "give the --wall it was packed with, or pack again");
+      throw InputError(
+          fmt::format("{}{} leaves a wall of {:.4g} mm, the limit is {:.4g} mm", which, roof,
+                      fault->clearance, request.limits.wall),
+          fmt::format("give the {} it was packed with, or pack again", has_roof ? "--bridge" : "--wall"));
     case PackingFault::Kind::gap:
-      throw InputError(fmt::format("{} leaves a gap of {:.4g} mm to sphere {}, the limit is {:.4g} mm", which,
-                                   fault->clearance, fault->other + 1, request.limits.gap),
-                       "give the --gap it was packed with, or pack again");
+      throw InputError(
+          fmt::format("{}{} leaves a gap of {:.4g} mm to sphere {}, the limit is {:.4g} mm", which, roof,
+                      fault->clearance, fault->other + 1, request.limits.gap),
+          fmt::format("give the {} it was packed with, or pack again", has_roof ? "--bridge" : "--gap"));
   }
   throw FailureError("unknown fault of a packing");
+}
+
+// A lattice's places have room for spheres, not for roofs above them.
+void require_no_roofs(const PackingLimits& limits) {
+  if (!limits.roof.shapes(limits.max_radius)) return;
+  throw UsageError(
+      fmt::format("--packing hexagonal with spheres of --max-radius {:g} mm: their ceilings are wider than "
+                  "--bridge {:g} mm, and a lattice has no room for roofs",
+                  limits.max_radius, limits.roof.bridge()),
+      fmt::format("give --max-radius {:g} or less, or --packing adaptive; with --bridge {:g} spheres of this "
+                  "size stay as they are",
+                  std::floor(limits.roof.widest_ball * 100) / 100, std::ceil(2 * limits.max_radius)));
 }
 
 Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor& monitor) {
@@ -58,6 +76,7 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
     case PackingMethod::given:
       return given_packing(mesh, request);
     case PackingMethod::hexagonal:
+      require_no_roofs(request.limits);
       return pack_hexagonal(mesh, request.limits, monitor, request.device);
   }
   throw FailureError("unknown packing method");
@@ -136,7 +155,7 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   report.density = total_volume(report.packing) / model.inspection.filled_volume;
 
   log.stage("measure");
-  report.clearances = measure_clearances(model.mesh, report.packing.spheres);
+  report.clearances = measure_clearances(model.mesh, report.packing.spheres, options.packing.limits.roof);
   log.stage("write");
   table.commit_text(sphere_table(report.packing, format));
   report.stages = log.finish();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/upright.h"
 
 namespace aerate {
 namespace {
@@ -82,9 +83,14 @@ PrintPrediction predict_print(const Mesh& outer, const Solid& solid, const VoidP
   prediction.described = options.print.has_value();
   prediction.settings = options.print.value_or(PrintSettings{});
   const PrintSettings& settings = prediction.settings;
-  const FilamentUse whole = filament_use(outer, settings);
+  const UprightFrame frame(plan.roof.up);
+  const auto use_of = [&](const Mesh& mesh) {
+    return frame.is_the_models_own() ? filament_use(mesh, settings)
+                                     : filament_use(turned_upright(mesh, frame), settings);
+  };
+  const FilamentUse whole = use_of(outer);
   monitor.check_interrupted();
-  const FilamentUse hollow = filament_use(solid.mesh, settings);
+  const FilamentUse hollow = use_of(solid.mesh);
   monitor.check_interrupted();
   prediction.filament_before_mm3 = whole.volume_mm3(settings);
   prediction.filament_after_mm3 = hollow.volume_mm3(settings);

@@ -1,9 +1,12 @@
 #include "pipeline/process_choice.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
+#include <optional>
 
 #include "core/error.h"
+#include "core/roof.h"
 #include "pipeline/process_file.h"
 
 namespace aerate {
@@ -22,6 +25,28 @@ double value_of(const Process& process, Limit limit) {
                      fmt::format("give --{}, or \"{}\" in the process file", name_of(limit), name_of(limit)));
   }
   return figure->value;
+}
+
+std::optional<double> value_among(const std::vector<LimitOrigin>& origins, Limit limit) {
+  for (const LimitOrigin& origin : origins)
+    if (origin.limit == limit) return origin.value;
+  return std::nullopt;
+}
+
+// Whether ceilings are limited: by figures of the process or of the user, which come in pairs.
+bool limits_ceilings(const Process& process, const std::vector<GivenLimit>& given) {
+  const auto is_given = [&](Limit limit) {
+    return std::any_of(given.begin(), given.end(), [&](const GivenLimit& own) { return own.limit == limit; });
+  };
+  const bool has_overhang = process[Limit::overhang] || is_given(Limit::overhang);
+  const bool has_bridge = process[Limit::bridge] || is_given(Limit::bridge);
+  if (has_overhang && has_bridge) return true;
+  if (is_given(Limit::overhang) || is_given(Limit::bridge)) {
+    throw UsageError(
+        fmt::format("process {}: a limit for ceilings needs both --overhang and --bridge", process.name),
+        fmt::format("give --{} too", has_overhang ? "bridge" : "overhang"));
+  }
+  return false;
 }
 
 std::string described(const LimitOrigin& origin) {
@@ -52,14 +77,20 @@ Process choose_process(const std::string& name_or_file) {
 
 PackingLimits packing_limits(const ProcessChoice& choice) {
   const auto value = [&](Limit limit) {
-    for (const LimitOrigin& origin : choice.origins)
-      if (origin.limit == limit) return origin.value;
-    throw FailureError(fmt::format("no limit {}", name_of(limit)));
+    const auto found = value_among(choice.origins, limit);
+    if (!found) throw FailureError(fmt::format("no limit {}", name_of(limit)));
+    return *found;
   };
+  const auto overhang = value_among(choice.origins, Limit::overhang);
+  const auto bridge = value_among(choice.origins, Limit::bridge);
+  Roof roof =
+      make_roof({.degrees = overhang.value_or(45), .bridge = bridge.value_or(0), .up = choice.direction.up});
+  if (!overhang || !bridge) roof.widest_ball = Roof{}.widest_ball;
   return {.wall = value(Limit::wall),
           .gap = value(Limit::gap),
           .min_radius = value(Limit::min_radius),
-          .max_radius = value(Limit::max_radius)};
+          .max_radius = value(Limit::max_radius),
+          .roof = roof};
 }
 
 ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>& given, ProcessCheck check) {
@@ -80,6 +111,8 @@ ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>
     choice.origins.push_back(chosen);
   };
   for (const Limit limit : {Limit::wall, Limit::gap, Limit::min_radius, Limit::max_radius}) choose(limit);
+  if (limits_ceilings(process, given))
+    for (const Limit limit : {Limit::overhang, Limit::bridge}) choose(limit);
 
   const PackingLimits limits = packing_limits(choice);
   if (!(limits.min_radius > 0))

@@ -17,13 +17,23 @@ struct LimitOrigin {
   std::string source;  // for a default: who says so
 };
 
-// The process a job is for, and where each limit that it is done under came from.
+// Which way is up while a model is printed.
+struct PrintDirection {
+  Vec3d up{0, 0, 1};
+  std::string name = "+z";
+  std::string origin = "default";
+};
+
+// The process a job is for, and where each limit that it is done under came from. Overhang and bridge are
+// among them where ceilings are limited.
 struct ProcessChoice {
   Process process;
   std::vector<LimitOrigin> origins;
+  PrintDirection direction = {};
 };
 
-// The limits that the origins name.
+// The limits that the origins name, and the roofs that follow from them. Throws UsageError for an overhang, a
+// bridge or a direction that makes no roof.
 PackingLimits packing_limits(const ProcessChoice& choice);
 
 // The built-in process of this name or, for a name that ends in .json or holds a slash, that of the file.
@@ -44,7 +54,7 @@ enum class ProcessCheck {
 };
 
 // The process's limits with those given in their place. Throws UsageError for limits that contradict each
-// other or that this process cannot print.
+// other or that this process cannot print, and for an overhang without a bridge or the other way round.
 ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>& given, ProcessCheck check);
 
 // What the user should know about closed voids in this process, if anything.

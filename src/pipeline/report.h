@@ -10,6 +10,7 @@
 #include "core/packing.h"
 #include "mesh/inspect.h"
 #include "packing/verify.h"
+#include "pipeline/ceilings.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
 
@@ -46,14 +47,18 @@ struct OutputFacts {
   double volume_after = 0;
   double volume_removed = 0;
 
-  // Each void's radius is that of the ball round its planned centre that holds its vertices.
+  // Each void's radius is that of the ball round its planned centre that, with its roof, holds its vertices.
   double smallest_radius = 0;
   double largest_radius = 0;
   // Between those balls and the outer surface, and between each other: the real clearances are at least
   // these.
   Clearances clearances;
-  // Largest depth by which a void stays inside its planned ball.
+  // Largest depth by which a void stays inside its planned shape.
   double void_deviation = 0;
+
+  // Voids that were given a roof, and the ceilings of all; absent where ceilings are not limited.
+  std::size_t roof_count = 0;
+  std::optional<Ceilings> ceilings;
 
   // Absent where parts of the model overlap: the surface integral would count the overlap twice.
   std::optional<Vec3d> centre_of_mass_before;

@@ -62,6 +62,77 @@ TEST(ProcessOptions, WithoutAnyItIsFdm) {
   EXPECT_EQ(report["notices"], Json::array());
 }
 
+TEST(ProcessOptions, VoidsGetRoofsWhereTheProcessLimitsCeilings) {
+  const Job job;
+  const Json wide = report_of(job, {"--max-radius", "9"});
+  EXPECT_EQ(wide["limits"]["overhang_degrees"], 45);
+  EXPECT_NEAR(wide["limits"]["bridge_mm"].get<double>(), 5, 1e-12);
+  EXPECT_EQ(origin_of(wide, "bridge")["origin"], "default of fdm");
+  EXPECT_EQ(wide["process"]["up"]["direction"], "+z");
+  EXPECT_EQ(wide["process"]["up"]["origin"], "default");
+  EXPECT_GE(wide["ceilings"]["roofs"], 1);
+  EXPECT_EQ(wide["ceilings"]["flatter_than_degrees"], 50);
+  EXPECT_LE(wide["ceilings"]["widest_mm"], 5.05);
+  // The default radius has ceilings that a printer bridges.
+  EXPECT_EQ(report_of(job, {})["ceilings"]["roofs"], 0);
+  EXPECT_GE(report_of(job, {"--process", "metal"})["ceilings"]["roofs"], 1);
+  for (const char* process : {"sla", "sls"}) {
+    const Json report = report_of(job, {"--process", process});
+    EXPECT_EQ(report["ceilings"], nullptr) << process;
+    EXPECT_EQ(report["limits"]["bridge_mm"], nullptr) << process;
+  }
+}
+
+TEST(ProcessOptions, OverhangBridgeAndDirectionCanBeGiven) {
+  const Job job;
+  const auto config = job.input("aerate.toml", "up = \"-y\"\nbridge = 8\n");
+  const Json report = report_of(job, {"--max-radius", "9", "--overhang", "30", "--config", config});
+  EXPECT_EQ(origin_of(report, "overhang")["value"], 30);
+  EXPECT_EQ(origin_of(report, "overhang")["origin"], "command line");
+  EXPECT_EQ(origin_of(report, "bridge")["origin"], "configuration file");
+  EXPECT_EQ(report["process"]["up"]["direction"], "-y");
+  EXPECT_EQ(report["process"]["up"]["origin"], "configuration file");
+  EXPECT_EQ(report["limits"]["up"], Json::array({0, -1, 0}));
+  EXPECT_LE(report["ceilings"]["widest_mm"], 8.05);
+  EXPECT_GE(report["ceilings"]["roofs"], 1);
+  const Json free = report_of(job, {"--max-radius", "9", "--bridge", "20"});
+  EXPECT_EQ(free["ceilings"]["roofs"], 0);
+  EXPECT_EQ(
+      report_of(job, {"--process", "sls", "--overhang", "45", "--bridge", "3"})["limits"]["overhang_degrees"],
+      45);
+}
+
+TEST(ProcessOptions, LimitsForCeilingsThatMakeNoRoofAreRefused) {
+  const Job job;
+  expect_refused(job, {"--overhang", "90"}, kUsage, {"90 degrees from the vertical"});
+  expect_refused(job, {"--overhang", "0"}, kUsage, {"--overhang"});
+  expect_refused(job, {"--bridge", "-1"}, kUsage, {"--bridge"});
+  expect_refused(job, {"--up", "0,0,0"}, kUsage, {"no direction", "x,y,z"});
+  expect_refused(job, {"--up", "sideways"}, kUsage, {"no direction"});
+  expect_refused(job, {"--process", "sls", "--bridge", "5"}, kUsage, {"sls", "--overhang"});
+  expect_refused(job, {"--packing", "hexagonal", "--max-radius", "5"}, kUsage,
+                 {"no room for roofs", "--max-radius 3.53", "--bridge 10"});
+  expect_refused(job, {"--device", "cuda", "--max-radius", "9"}, kUsage, {"on the CPU only"});
+  const auto without_roofs = job.input("spheres.csv", "x,y,z,radius,kind\n20,20,28,9.5,adaptive\n");
+  expect_refused(job, {"--spheres", without_roofs, "--max-radius", "10"}, kUnreadable,
+                 {"with the roofs that", "--bridge"});
+}
+
+TEST(ProcessOptions, WhatStandsIsSeenInTheDirectionOfThePrint) {
+  const Job job;
+  const Json upright = report_of(job, {"--max-radius", "9"});
+  const Json lying = report_of(job, {"--max-radius", "9", "--up", "1,0,0"});
+  // A cube stands on any of its faces.
+  const auto margin = [](const Json& report) {
+    return report["strength_and_balance"]["footing_margin_before_mm"].get<double>();
+  };
+  EXPECT_NEAR(margin(upright), 20, 1e-6);
+  EXPECT_NEAR(margin(lying), 20, 1e-6);
+  EXPECT_EQ(report_of(job, {"--max-radius", "9", "--up",
+                            "1,1,1"})["strength_and_balance"]["footing_margin_before_mm"],
+            nullptr);
+}
+
 TEST(ProcessOptions, APresetSetsItsLimitsAndSaysThatSealedVoidsTrapMaterial) {
   const Job job;
   const Json report = report_of(job, {"--process", "sla"});

@@ -78,7 +78,7 @@ struct Packed {
     grid.enter(balls.view(), 0, job.balls.front().radius);
   }
 
-  FieldView field() { return {bvh.view, winding.view, grid.view(), kWall}; }
+  FieldView<BallShape> field() { return {bvh.view, winding.view, grid.view(), kWall}; }
 };
 
 TEST_F(AdaptiveKernelsCuda, JobIsHalfPacked) {
@@ -94,7 +94,7 @@ struct Answer {
 };
 
 struct AskField {
-  FieldView field;
+  FieldView<BallShape> field;
   View<const Vec3d> points;
   View<Answer> answers;
 
@@ -149,15 +149,15 @@ TEST_F(AdaptiveKernelsCuda, QueriesOfTheField) {
 template <typename Executor>
 std::vector<std::vector<std::uint32_t>> cells_of_grid(const Executor& executor, const Job& job) {
   Packed<Executor> packed(executor, job);
-  const BallGridView grid = packed.grid.view();
+  const BallGridView<BallShape> grid = packed.grid.view();
   const auto entries = executor.download(View<const BallEntry>(grid.entries));
   std::vector<std::vector<std::uint32_t>> cells;
   for (const std::uint32_t head : executor.download(View<const std::uint32_t>(grid.heads))) {
     std::vector<std::uint32_t> cell;
-    if (head != BallGridView::kEmpty && (head & BallGridView::kInsideBit) != 0) {
+    if (head != BallGridView<BallShape>::kEmpty && (head & BallGridView<BallShape>::kInsideBit) != 0) {
       cell.push_back(head);
     } else {
-      for (std::uint32_t i = head; i != BallGridView::kEmpty; i = entries[i].next)
+      for (std::uint32_t i = head; i != BallGridView<BallShape>::kEmpty; i = entries[i].next)
         cell.push_back(entries[i].ball);
     }
     std::sort(cell.begin(), cell.end());
@@ -171,7 +171,7 @@ TEST_F(AdaptiveKernelsCuda, GridOfBalls) {
   const auto expected = cells_of_grid(SerialExecutor{}, job);
   const auto shared = [](const std::vector<std::uint32_t>& cell) { return cell.size() > 2; };
   const auto inside = [](const std::vector<std::uint32_t>& cell) {
-    return cell.size() == 1 && (cell[0] & BallGridView::kInsideBit) != 0;
+    return cell.size() == 1 && (cell[0] & BallGridView<BallShape>::kInsideBit) != 0;
   };
   EXPECT_GT(std::count_if(expected.begin(), expected.end(), shared), 5);
   EXPECT_GT(std::count_if(expected.begin(), expected.end(), inside), 5);
@@ -188,7 +188,7 @@ template <typename Executor>
 TreeStages run_tree(const Executor& executor, const Job& job) {
   using namespace cell_tree_detail;
   Packed<Executor> packed(executor, job);
-  const FieldView field = packed.field();
+  const FieldView<BallShape> field = packed.field();
   constexpr std::uint32_t kAlong = 9;
   constexpr std::size_t kRoots = kAlong * kAlong * kAlong, kMost = 9 * kRoots;
   constexpr double kThreshold = 0.5, kLeast = 0.3;
@@ -200,14 +200,16 @@ TreeStages run_tree(const Executor& executor, const Job& job) {
   const CellsView cells{cell_buffer.view(), bound_buffer.view(), half_diagonal};
   TreeStages stages;
 
-  executor.for_each_index(kRoots, MakeRoots{cells, field, job.input.box.lower, edge, kAlong, kAlong});
+  executor.for_each_index(kRoots,
+                          MakeRoots<BallShape>{cells, field, job.input.box.lower, edge, kAlong, kAlong});
   stages.roots = bytes_at(executor, View<Cell>{cells.cells.data, kRoots});
   stages.root_bounds = bytes_at(executor, View<double>{cells.bounds.data, kRoots});
 
   // Coarse enough that some are searched at once, and others halved.
   const double finest = half_diagonal;
   auto fates = executor.template allocate<CellFate>(kRoots);
-  executor.for_each_index(kRoots, Examine{cells, field, 0, kThreshold, 0.5 * finest, fates.view()});
+  executor.for_each_index(kRoots,
+                          Examine<BallShape>{cells, field, 0, kThreshold, 0.5 * finest, fates.view()});
   stages.fates = bytes_at(executor, fates.view());
   auto parents = executor.template allocate<Cell>(kRoots);
   auto next_parents = executor.template allocate<Cell>(8 * kRoots);
@@ -219,8 +221,9 @@ TreeStages run_tree(const Executor& executor, const Job& job) {
   const std::size_t made = 8 * std::size_t{stages.examined.first};
   auto children = executor.template allocate<Child>(made);
   auto child_fates = executor.template allocate<CellFate>(made);
-  executor.for_each_index(made, MakeChildren{field, half_diagonal, parents.view(), kThreshold, 0.5 * finest,
-                                             kLeast, children.view(), child_fates.view()});
+  executor.for_each_index(
+      made, MakeChildren<BallShape>{field, half_diagonal, parents.view(), kThreshold, 0.5 * finest, kLeast,
+                                    children.view(), child_fates.view()});
   stages.child_fates = bytes_at(executor, child_fates.view());
   stages.made = executor.select(made, TallyChildren{child_fates.view()},
                                 AppendChildren{children.view(), child_fates.view(), cells, kRoots,
@@ -276,8 +279,8 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   auto bound_buffer = executor.template allocate<double>(kCells);
   const CellsView cells{cell_buffer.view(), bound_buffer.view(),
                         edge * cell_tree_detail::kHalfDiagonalOfEdge};
-  executor.for_each_index(
-      kCells, cell_tree_detail::MakeRoots{cells, packed.field(), job.input.box.lower, edge, kAlong, kAlong});
+  executor.for_each_index(kCells, cell_tree_detail::MakeRoots<BallShape>{
+                                      cells, packed.field(), job.input.box.lower, edge, kAlong, kAlong});
   std::vector<std::uint32_t> list;
   for (std::uint32_t i = 0; i < kCells; i += 3) list.push_back(i);
   const auto listed = executor.upload(std::span<const std::uint32_t>(list));
@@ -285,13 +288,13 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   auto found = executor.template allocate<std::uint8_t>(list.size());
   RoundStages stages;
   stages.searches = list.size();
-  executor.for_each_index(list.size(), Search{cells,
-                                              packed.field(),
-                                              listed.view(),
-                                              {0.3, kReach, 3e-5, 1.25},
-                                              1e-12,
-                                              searched.view(),
-                                              found.view()});
+  executor.for_each_index(list.size(), Search<BallShape>{cells,
+                                                         packed.field(),
+                                                         listed.view(),
+                                                         {0.3, kReach, 3e-5, 1.25},
+                                                         1e-12,
+                                                         searched.view(),
+                                                         found.view()});
   stages.found = bytes_at(executor, found.view());
   stages.bounds = bytes_at(executor, cells.bounds);
 
@@ -308,7 +311,7 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   stages.keys = bytes_at(executor, View<std::uint64_t>{keys.view().data, count});
   stages.order = bytes_at(executor, View<std::uint32_t>{order.view().data, count});
 
-  CandidateGrid grid;
+  CandidateGrid<BallShape> grid;
   grid.cells.origin = job.input.box.lower;
   grid.cells.cells_per_mm = 1 / (2.1 * kReach);
   grid.cells.count_x = grid.cells.count_y = grid.cells.count_z = 8;
@@ -322,8 +325,8 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   auto even = executor.template allocate<Verdict>(count);
   auto odd = executor.template allocate<Verdict>(count);
   executor.for_each_step(
-      Decide::kSteps, count,
-      Decide{grid, candidates.view(), order.view(), ranked.view(), even.view(), odd.view()});
+      Decide<BallShape>::kSteps, count,
+      Decide<BallShape>{grid, candidates.view(), order.view(), ranked.view(), even.view(), odd.view()});
   stages.ranked = bytes_at(executor, ranked.view());
   stages.verdicts = bytes_at(executor, even.view());
   auto balls = executor.template allocate<Ball>(count);
@@ -365,8 +368,8 @@ std::pair<Bytes, Bytes> settle(const Executor& executor, const Job& job) {
   auto candidates = executor.upload(std::span<const Candidate>(starts));
   auto found = executor.template allocate<std::uint8_t>(starts.size());
   executor.for_each_index(starts.size(), SetAll<std::uint8_t>{found.view(), 1});
-  executor.for_each_index(starts.size(),
-                          Settle{packed.field(), settling, 1e-12, candidates.view(), found.view()});
+  executor.for_each_index(
+      starts.size(), Settle<BallShape>{packed.field(), settling, 1e-12, candidates.view(), found.view()});
   return {bytes_at(executor, candidates.view()), bytes_at(executor, found.view())};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/roof.h"
 #include "mesh/weld.h"
 #include "pipeline/check_output.h"
 #include "printing/carve.h"
@@ -90,6 +91,47 @@ TEST_F(CheckOutput, MeasuresASoundResult) {
   EXPECT_NEAR(facts.centre_of_mass_after->x, (27000 * 15 - moment) / (27000 - planned), 0.01);
 }
 
+TEST_F(CheckOutput, MeasuresVoidsWithRoofs) {
+  plan_ = {{{{9, 9, 9}, 6, SphereKind::adaptive}, {{22, 22, 22}, 2, SphereKind::adaptive}}, make_roof({})};
+  limits_.roof = plan_.roof;
+  Monitor silent;
+  solid_ = carve_keeping_surface(model_, plan_, {.tolerance = tolerance_}, silent);
+  const OutputFacts facts = check();
+  const double planned = void_volume(plan_.roof, 6) + void_volume(plan_.roof, 2);
+  EXPECT_LT(facts.volume_removed, planned);
+  EXPECT_GT(facts.volume_removed, planned * 0.97);
+  EXPECT_EQ(facts.roof_count, 1U);
+  EXPECT_LE(facts.largest_radius, 6);
+  EXPECT_NEAR(facts.largest_radius, 6, 1e-4);
+  EXPECT_LE(facts.void_deviation, tolerance_);
+  EXPECT_NEAR(facts.clearances.wall, 3, 1e-4);
+  ASSERT_TRUE(facts.ceilings);
+  EXPECT_LE(facts.ceilings->widest, 5 + tolerance_);
+  EXPECT_GT(facts.ceilings->widest, 4.8);
+}
+
+TEST_F(CheckOutput, FindsAVoidWithoutTheRoofThatWasPlanned) {
+  plan_.roof = limits_.roof = make_roof({});
+  expect_found("void 0: it has radius 4.58");
+}
+
+TEST_F(CheckOutput, FindsAVoidThatReachesAboveItsRoof) {
+  plan_.roof = limits_.roof = make_roof({});
+  Monitor silent;
+  solid_ = carve_keeping_surface(model_, plan_, {.tolerance = tolerance_}, silent);
+  Vec3f* highest = nullptr;
+  for (const Triangle& t : void_triangles(1))
+    for (const std::uint32_t v : t)
+      if (highest == nullptr || solid_.mesh.positions[v].z > highest->z) highest = &solid_.mesh.positions[v];
+  highest->z += 0.001F;
+  expect_found("void 1: it has radius 6.00");
+}
+
+TEST_F(CheckOutput, FindsACeilingThatIsTooWide) {
+  limits_.roof = make_roof({});
+  expect_found("a ceiling is 6.");
+}
+
 TEST_F(CheckOutput, FindsAFileThatDiffersFromTheResult) {
   Mesh moved = as_read_back(solid_.mesh);
   moved.positions[20].x = std::nextafter(moved.positions[20].x, 100.0F);
@@ -132,7 +174,7 @@ TEST_F(CheckOutput, FindsAVoidThatIsTooLarge) {
 
 TEST_F(CheckOutput, FindsAVoidThatIsTooSmall) {
   tolerance_ /= 3;
-  expect_found("inside its ball");
+  expect_found("inside its planned shape");
 }
 
 TEST_F(CheckOutput, FindsABrokenWallOrGap) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/roof.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
 #include "mesh/load.h"
@@ -278,6 +279,30 @@ TEST_F(Subtract, RefusesVoidsThatRunTogether) {
   EXPECT_TRUE(test::contains(message, "the void at (9.6, 10, 10) mm runs together with its neighbour"));
   EXPECT_TRUE(test::contains(message, "use --voxel 0.12 or less"));
   EXPECT_NO_THROW(level_set_of(block_, 0.12).subtract(plan_, {}, monitor));
+}
+
+TEST_F(Subtract, FindsVoidsWithRoofsAgain) {
+  for (const Vec3d up : {Vec3d{0, 0, 1}, {-1, 0, 0}, {0.6, 0, 0.8}}) {
+    plan_ = {{ball({8, 10, 9}, 6), ball({22, 10, 9}, 5), ball({15, 3, 4}, 1.5)},
+             make_roof({.bridge = 3, .up = up})};
+    Monitor monitor;
+    const Solid solid = level_set_of(block_, 0.3).subtract(plan_, {0.05}, monitor);
+    ASSERT_EQ(solid.void_shells.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Mesh shell = test::turned_inside_out(test::extract(solid.mesh, solid.void_shells[i]));
+      const double planned = void_volume(plan_.roof, plan_.spheres[i].radius);
+      EXPECT_LT(signed_volume(shell), planned);
+      EXPECT_GT(signed_volume(shell), 0.93 * planned);
+    }
+  }
+  // Far enough apart as spheres; the roof of one reaches into the other.
+  plan_ = {{ball({15, 10, 6}, 5), ball({15, 10, 14}, 2)}, {}};
+  Monitor monitor;
+  const ModelLevelSet model = level_set_of(block_, 0.3);
+  EXPECT_NO_THROW(model.subtract(plan_, {}, monitor));
+  plan_.roof = make_roof({.bridge = 1});
+  EXPECT_TRUE(test::contains(test::message_of<FailureError>([&] { model.subtract(plan_, {}, monitor); }),
+                             "runs together with its neighbour"));
 }
 
 TEST_F(Subtract, RefusesVoidsThatOpenTheSurface) {

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "kernels/roof_distance.h"
+#include "kernels/triangle_bvh.h"
+#include "kernels/vec.h"
+#include "kernels/view.h"
+
+namespace aerate::kernels {
+
+// The largest radius of a void with a roof that keeps off the surface, and the facet that it touches.
+struct WidestVoid {
+  double radius;
+  std::uint32_t facet;  // position in the hierarchy's own order, or kNoFacet
+};
+
+namespace roofed_surface_detail {
+
+struct RadiusMetric {
+  Roof roof;
+  Vec3d foot;
+  double clearance;
+  WidestVoid best;
+  double spine;  // of a void of the radius so far
+  View<const Facet> facets;
+
+  // Along the spine the distance to a box changes by no more than the height does, whichever end it is known
+  // at; (distance + t sine) is then least where the two bounds meet.
+  AERATE_HD double bound(const Box3f& box) const {
+    const double at_foot = std::sqrt(distance_squared_to_box(foot, box));
+    if (!(spine > 0)) return at_foot - clearance;
+    const double at_end = std::sqrt(distance_squared_to_box(foot + roof.up * spine, box));
+    const double height = min_of(max_of(0.5 * (at_foot - at_end + spine), 0.0), spine);
+    return at_foot - (1 - roof.sine) * height - clearance;
+  }
+
+  AERATE_HD double limit() const { return best.radius; }
+
+  AERATE_HD void visit(std::uint32_t i) {
+    const double reach = best.radius + clearance + (1 - roof.sine) * spine;
+    if (!is_facet_nearer(foot, facets[i], reach * reach)) return;
+    const double radius = radius_within(roof, foot, facets[i], clearance).value;
+    if (radius < best.radius) {
+      best = {radius, i};
+      spine = roof.spine(radius);
+    }
+  }
+};
+
+// Distance along a spine of known height.
+struct DistanceMetric {
+  Roof roof;
+  Vec3d centre;
+  double radius;
+  double best;
+  View<const Facet> facets;
+
+  AERATE_HD double bound(const Box3f& box) const {
+    const double spine = roof.spine(radius);
+    const double at_foot = std::sqrt(distance_squared_to_box(centre, box));
+    const double at_end = std::sqrt(distance_squared_to_box(centre + roof.up * spine, box));
+    const double height = min_of(max_of(0.5 * (at_foot - at_end + spine), 0.0), spine);
+    return at_foot - (1 - roof.sine) * height - radius;
+  }
+  AERATE_HD double limit() const { return best; }
+  AERATE_HD void visit(std::uint32_t i) {
+    best = min_of(best, distance_to_facet(roof, centre, radius, facets[i]));
+  }
+};
+
+}  // namespace roofed_surface_detail
+
+// The largest void at `foot`, inside the surface, that keeps `clearance` from it, if it is smaller than
+// `best`, whose radius must be finite and more than -clearance.
+AERATE_HD inline WidestVoid narrower_than(const TriangleBvhView& surface, const Roof& roof, Vec3d foot,
+                                          double clearance, WidestVoid best) {
+  roofed_surface_detail::RadiusMetric metric{roof,          foot, clearance, best, roof.spine(best.radius),
+                                             surface.facets};
+  surface.walk(metric);
+  return metric.best;
+}
+
+// The same where nothing is known.
+AERATE_HD inline WidestVoid widest_void(const TriangleBvhView& surface, const Roof& roof, Vec3d foot,
+                                        double clearance) {
+  const NearestFacet nearest = surface.nearest(foot, std::numeric_limits<double>::infinity());
+  const double ball = std::sqrt(nearest.distance_squared) - clearance;
+  if (!roof.shapes(ball)) return {ball, nearest.facet};
+  return narrower_than(surface, roof, foot, clearance, {ball, nearest.facet});
+}
+
+// Distance from a void to the surface, with the reserve above it that `distance_to_facet` has.
+AERATE_HD inline double distance_to_surface(const TriangleBvhView& surface, const Roof& roof, Vec3d centre,
+                                            double radius) {
+  const NearestFacet nearest = surface.nearest(centre, std::numeric_limits<double>::infinity());
+  const double ball = std::sqrt(nearest.distance_squared) - radius;
+  if (!roof.shapes(radius)) return ball;
+  roofed_surface_detail::DistanceMetric metric{roof, centre, radius, ball, surface.facets};
+  surface.walk(metric);
+  return metric.best;
+}
+
+}  // namespace aerate::kernels

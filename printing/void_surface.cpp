@@ -1,0 +1,238 @@
+#include "printing/void_surface.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <tbb/parallel_for.h>
+
+#include "core/error.h"
+#include "core/upright.h"
+#include "printing/rounding.h"
+
+namespace aerate {
+namespace {
+
+// A top this much narrower than the tolerance is made a point.
+constexpr double kApexShare = 0.25;
+
+// A cone must be this many steps of fp32 wide, or the ring and the top would run together.
+constexpr double kMarginsPerCone = 64;
+
+double farthest_point(const Roof& roof, double radius) {
+  return std::max(radius, std::hypot(roof.top(radius), roof.flat_radius()));
+}
+
+// Of a void with a roof, which reaches farther than its ball.
+double margin_of(const Roof& roof, const Sphere& sphere) {
+  return rounding_margin({sphere.centre, farthest_point(roof, sphere.radius), sphere.kind});
+}
+
+VoidTemplate::Top top_of(const Roof& roof, const Sphere& sphere, double tolerance) {
+  if (roof.flat_radius() <= kApexShare * tolerance) return VoidTemplate::Top::apex;
+  const double cone_width = sphere.radius * roof.cosine - roof.flat_radius();
+  return cone_width < kMarginsPerCone * margin_of(roof, sphere) ? VoidTemplate::Top::shoulder
+                                                                : VoidTemplate::Top::flat;
+}
+
+// Vertices are moved towards the centre by this share of their distance, so that every plane that touches the
+// void is left behind by the rounding margin at least.
+double shrinkage(const Roof& roof, const Sphere& sphere) {
+  return margin_of(roof, sphere) / std::min(sphere.radius, roof.top(sphere.radius));
+}
+
+// Greatest sagitta of a cut ball for the void, which then lies within the tolerance.
+double allowed_sagitta(const Roof& roof, const Sphere& sphere, VoidTemplate::Top top, double tolerance) {
+  double rest =
+      tolerance - margin_of(roof, sphere) - shrinkage(roof, sphere) * farthest_point(roof, sphere.radius);
+  const double cone_width = sphere.radius * roof.cosine - roof.flat_radius();
+  if (top == VoidTemplate::Top::apex) rest -= roof.flat_radius() * roof.cosine;
+  if (top == VoidTemplate::Top::shoulder) rest -= 2 * cone_width / roof.sine;
+  return rest / sphere.radius;
+}
+
+// Volume of a cut ball with its cone and top over that of the void.
+double volume_share(const CutBall& cut, const Roof& roof, double radius) {
+  const auto corners = static_cast<double>(cut.ring_count);
+  const double of_circle = corners / (2 * std::numbers::pi) * std::sin(2 * std::numbers::pi / corners);
+  const double shoulder = roof.shoulder(radius), wide = radius * roof.cosine, narrow = roof.flat_radius();
+  const double above = std::numbers::pi / 3 *
+                       (wide * wide * shoulder +
+                        (roof.top(radius) - shoulder) * (wide * wide + wide * narrow + narrow * narrow));
+  return (cut.volume * radius * radius * radius + of_circle * above) / void_volume(roof, radius);
+}
+
+// Writes vertices and triangles of one void into its range of a mesh, turned inside out.
+class Placement {
+ public:
+  Placement(const ShellRange& range, Mesh& mesh)
+      : first_(static_cast<std::uint32_t>(range.first_vertex)),
+        position_(mesh.positions.data() + range.first_vertex),
+        triangle_(mesh.triangles.data() + range.first_triangle) {}
+
+  void vertex(Vec3d p) { *position_++ = to_float(p); }
+  // Counter-clockwise as seen from outside the void.
+  void triangle(std::size_t a, std::size_t b, std::size_t c) {
+    *triangle_++ = {number(a), number(c), number(b)};
+  }
+
+ private:
+  std::uint32_t number(std::size_t vertex) const { return first_ + static_cast<std::uint32_t>(vertex); }
+
+  std::uint32_t first_;
+  Vec3f* position_;
+  Triangle* triangle_;
+};
+
+void place_ball(const BallTemplate& ball, const Sphere& sphere, Placement place) {
+  const double radius = sphere.radius - rounding_margin(sphere);
+  for (const Vec3d& direction : ball.directions) place.vertex(sphere.centre + direction * radius);
+  for (const Triangle& t : ball.triangles) place.triangle(t[0], t[1], t[2]);
+}
+
+// A convex polygon of the vertices first, first + 1, ...: a zigzag, which has better angles than a fan.
+void close_polygon(std::size_t first, std::size_t count, Placement& place) {
+  std::size_t low = 0, high = count - 1;
+  while (low + 1 < high) {
+    place.triangle(first + low, first + low + 1, first + high);
+    ++low;
+    if (low + 1 >= high) break;
+    place.triangle(first + low, first + high - 1, first + high);
+    --high;
+  }
+}
+
+void place_cut_ball(const VoidTemplate& chosen, const Sphere& sphere, const Roof& roof, Placement place) {
+  const CutBall& cut = *chosen.cut;
+  const std::size_t ring = cut.ring_count, rim = cut.directions.size();
+  const UprightFrame frame(roof.up);
+  const double shrunk = 1 - shrinkage(roof, sphere);
+  const auto put = [&](double x, double y, double z) {
+    place.vertex(sphere.centre + (frame.x * x + frame.y * y + frame.z * z) * shrunk);
+  };
+  const double top = roof.top(sphere.radius);
+  const double to_rim = roof.flat_radius() / roof.cosine;  // from the ring's unit directions
+  const bool is_shoulder = chosen.top == VoidTemplate::Top::shoulder;
+  for (std::size_t i = 0; i < cut.directions.size(); ++i) {
+    const Vec3d d = cut.directions[i];
+    if (is_shoulder && i < ring) {
+      put(d.x * to_rim, d.y * to_rim, top);
+    } else {
+      put(d.x * sphere.radius, d.y * sphere.radius, d.z * sphere.radius);
+    }
+  }
+  for (const Triangle& t : cut.triangles) place.triangle(t[0], t[1], t[2]);
+  switch (chosen.top) {
+    case VoidTemplate::Top::shoulder:
+      close_polygon(0, ring, place);
+      return;
+    case VoidTemplate::Top::apex:
+      put(0, 0, top);
+      for (std::size_t i = 0; i < ring; ++i) place.triangle(i, (i + 1) % ring, rim);
+      return;
+    case VoidTemplate::Top::flat:
+      for (std::size_t i = 0; i < ring; ++i) {
+        const std::size_t next = (i + 1) % ring;
+        put(cut.directions[i].x * to_rim, cut.directions[i].y * to_rim, top);
+        place.triangle(i, next, rim + next);
+        place.triangle(i, rim + next, rim + i);
+      }
+      close_polygon(rim, ring, place);
+      return;
+  }
+}
+
+}  // namespace
+
+std::size_t VoidTemplate::vertex_count() const {
+  if (ball != nullptr) return ball->directions.size();
+  return cut->directions.size() + (top == Top::flat ? cut->ring_count : top == Top::apex ? 1 : 0);
+}
+
+std::size_t VoidTemplate::triangle_count() const {
+  if (ball != nullptr) return ball->triangles.size();
+  const std::size_t ring = cut->ring_count;
+  return cut->triangles.size() + (top == Top::flat ? 3 * ring - 2 : top == Top::apex ? ring : ring - 2);
+}
+
+struct VoidTemplates::Cut {
+  std::optional<CutBall> made;
+};
+
+VoidTemplates::VoidTemplates(const Roof& roof) : roof_(roof), cuts_(BallLadder::kLevelCount) {}
+VoidTemplates::~VoidTemplates() = default;
+
+std::vector<VoidTemplate> VoidTemplates::choose(std::span<const Sphere> spheres, double tolerance) {
+  ladder_.prepare(spheres, tolerance);
+  std::vector<VoidTemplate> chosen;
+  chosen.reserve(spheres.size());
+  for (const Sphere& sphere : spheres) {
+    if (roof_.shapes(sphere.radius)) {
+      chosen.push_back(choose_with_roof(sphere, tolerance));
+    } else {
+      chosen.push_back({.ball = &ladder_[ladder_.level_for(sphere, tolerance)]});
+    }
+  }
+  return chosen;
+}
+
+VoidTemplate VoidTemplates::choose_with_roof(const Sphere& sphere, double tolerance) {
+  const VoidTemplate::Top top = top_of(roof_, sphere, tolerance);
+  const double allowed = allowed_sagitta(roof_, sphere, top, tolerance);
+  const double shrunk = 1 - shrinkage(roof_, sphere);
+  for (std::size_t level = ladder_.level_for(sphere, tolerance); level < BallLadder::kLevelCount; ++level) {
+    const CutBall* made = cut(level);
+    if (made == nullptr || made->sagitta > allowed) continue;
+    const double share = volume_share(*made, roof_, sphere.radius) * shrunk * shrunk * shrunk;
+    if (share >= kLeastVolumeShare) return {.cut = made, .top = top};
+  }
+  throw too_many_triangles(sphere, tolerance);
+}
+
+const CutBall* VoidTemplates::cut(std::size_t level) {
+  if (!cuts_[level]) {
+    const BallTemplate* ball = ladder_.find(level);
+    cuts_[level] = std::make_unique<Cut>(Cut{ball != nullptr ? cut_ball(*ball, roof_) : std::nullopt});
+  }
+  const std::optional<CutBall>& made = cuts_[level]->made;
+  return made ? &*made : nullptr;
+}
+
+Solid assemble(Mesh outer, const VoidPlan& plan, std::span<const VoidTemplate> templates) {
+  assert(plan.spheres.size() == templates.size());
+  Solid solid;
+  solid.outer_triangle_count = outer.triangles.size();
+  solid.outer_vertex_count = outer.positions.size();
+  solid.void_shells.reserve(templates.size());
+  ShellRange range{solid.outer_triangle_count, 0, solid.outer_vertex_count, 0};
+  for (const VoidTemplate& chosen : templates) {
+    range.triangle_count = chosen.triangle_count();
+    range.vertex_count = chosen.vertex_count();
+    solid.void_shells.push_back(range);
+    range.first_triangle += range.triangle_count;
+    range.first_vertex += range.vertex_count;
+  }
+  if (range.first_vertex > std::numeric_limits<std::uint32_t>::max()) {
+    throw FailureError("the voids would take " + std::to_string(range.first_triangle) + " triangles",
+                       "raise --tolerance, or set --max-triangles");
+  }
+
+  solid.mesh = std::move(outer);
+  solid.mesh.positions.resize(range.first_vertex);
+  solid.mesh.triangles.resize(range.first_triangle);
+  tbb::parallel_for(std::size_t{0}, templates.size(), [&](std::size_t i) {
+    const Placement place(solid.void_shells[i], solid.mesh);
+    if (templates[i].ball != nullptr) {
+      place_ball(*templates[i].ball, plan.spheres[i], place);
+    } else {
+      place_cut_ball(templates[i], plan.spheres[i], plan.roof, place);
+    }
+  });
+  return solid;
+}
+
+}  // namespace aerate
