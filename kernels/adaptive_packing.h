@@ -409,7 +409,7 @@ class AdaptivePacker {
 inline constexpr std::size_t kAdaptiveIndexBytes = 2 * sizeof(Facet) + sizeof(Box3f) + 12;
 
 // The whole job. The triangles go to the executor's memory once, and each ball comes back once. Two
-// functions, so that an executor pays for voids with roofs only where it packs them.
+// functions, since a packing without roofs must not pay for them.
 template <typename Executor>
 AdaptiveResult pack_adaptive(const Executor& executor, const AdaptiveInput& input) {
   return AdaptivePacker<Executor, BallShape>(executor, input, {}).pack();

@@ -18,6 +18,10 @@ HexagonalResult pack_hexagonal_on_cuda(int /*device*/, const HexagonalInput& /*i
   throw CudaError(CudaError::Kind::no_device, "this build has no CUDA", "run on the CPU");
 }
 
+AdaptiveResult pack_adaptive_with_roofs_on_cuda(int /*device*/, const AdaptiveInput& /*input*/) {
+  throw CudaError(CudaError::Kind::no_device, "this build has no CUDA", "run on the CPU");
+}
+
 AdaptiveResult pack_adaptive_on_cuda(int /*device*/, const AdaptiveInput& /*input*/) {
   throw CudaError(CudaError::Kind::no_device, "this build has no CUDA", "run on the CPU");
 }

@@ -12,6 +12,9 @@ namespace aerate::kernels {
 // A triangle with its corners at hand: one fetch where indices would take four.
 struct Facet {
   Vec3f a, b, c;
+
+  // By number, for loops over a facet in memory.
+  AERATE_HD const Vec3f& corner(int i) const { return i == 0 ? a : i == 1 ? b : c; }
 };
 
 struct FacetIndices {

@@ -99,31 +99,28 @@ AERATE_HD inline SpineReach reach_facet(Vec3d foot, Vec3d up, const Spine& spine
     const double value = profile.distance(height) + height * spine.sine;
     if (value < best.value) best = {value, height};
   };
-  const Vec3d a = to_double(facet.a);
-  const Vec3d b = to_double(facet.b);
-  const Vec3d c = to_double(facet.c);
-  const auto corner = [&](Vec3d q) {
-    const Profile profile = profile_of_point(foot, up, q);
+  AERATE_NO_UNROLL
+  for (int i = 0; i < 3; ++i) {
+    const Profile profile = profile_of_point(foot, up, to_double(facet.corner(i)));
     const double height = spine.height(profile);
     if (height > 0) consider(profile, height);
-  };
-  const auto edge = [&](Vec3d from, Vec3d to) {
-    const Vec3d along = to - from;
+  }
+  AERATE_NO_UNROLL
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d from = to_double(facet.corner(i));
+    const Vec3d along = to_double(facet.corner(i == 2 ? 0 : i + 1)) - from;
     const double extent = length(along);
-    if (!(extent > 0)) return;
+    if (!(extent > 0)) continue;
     const Vec3d unit = along * (1 / extent);
     const Profile profile = profile_of_line(foot, up, from, unit);
     const double height = spine.height(profile);
-    if (!(height > 0)) return;
+    if (!(height > 0)) continue;
     const double position = dot(foot + up * height - from, unit);
     if (position >= 0 && position <= extent) consider(profile, height);
-  };
-  corner(a);
-  corner(b);
-  corner(c);
-  edge(a, b);
-  edge(b, c);
-  edge(c, a);
+  }
+  const Vec3d a = to_double(facet.a);
+  const Vec3d b = to_double(facet.b);
+  const Vec3d c = to_double(facet.c);
   const Vec3d normal = cross(b - a, c - a);
   const double extent = length(normal);
   if (extent > 0) {

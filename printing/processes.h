@@ -65,8 +65,8 @@ const Process* find_process(std::string_view name);
 
 // What is packed with when nothing else is said: the limits of `fdm`, for a 0.4 mm nozzle.
 //   wall 1.2 mm: three extrusion lines; gap 0.9 mm: two extrusion lines, the least that separates two voids;
-//   max_radius 3.5 mm: the ceiling of a larger sphere, where it is flatter than 45 degrees, is wider than the
-//   5 mm that a printer bridges well (1.41 r); min_radius 0.62 mm: 1 mm3, below which slicers drop shells.
-inline constexpr PackingLimits kDefaultLimits{.wall = 1.2, .gap = 0.9, .min_radius = 0.62, .max_radius = 3.5};
+//   min_radius 0.62 mm: 1 mm3, below which slicers drop shells; max_radius 25 mm: what pays at 15 % infill
+//   (docs/economics.md) still fits. Larger voids than the bridge allows get roofs.
+inline constexpr PackingLimits kDefaultLimits{.wall = 1.2, .gap = 0.9, .min_radius = 0.62, .max_radius = 25};
 
 }  // namespace aerate

@@ -82,6 +82,7 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
 PackingRequest PackingCommandOptions::request() const {
   PackingRequest request;
   request.process = process_.choice();
+  if (packing_ == "hexagonal") keep_to_balls_without_roofs(request.process);
   request.limits = packing_limits(request.process);
   request.device = parse_device(device_).value();
   if (packing_ == "hexagonal") {

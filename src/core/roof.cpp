@@ -45,6 +45,10 @@ Roof make_roof(const Overhang& overhang) {
   return roof;
 }
 
+double largest_without_roof(const Roof& roof) {
+  return std::floor(roof.widest_ball * 100) / 100;
+}
+
 double overhang_degrees(const Roof& roof) {
   return std::atan2(roof.sine, roof.cosine) / kDegree;
 }

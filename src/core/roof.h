@@ -16,6 +16,9 @@ struct Overhang {
 // kernels need none. Throws UsageError for values outside their range.
 Roof make_roof(const Overhang& overhang);
 
+// The radius of the largest balls that need no roof, rounded down to 0.01 mm.
+double largest_without_roof(const Roof& roof);
+
 // The overhang angle of a roof, degrees from the vertical.
 double overhang_degrees(const Roof& roof);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "core/error.h"
 #include "kernels/adaptive_cuda.h"
@@ -109,20 +108,11 @@ Packing packing_of(const kernels::AdaptiveResult& result, const PackingLimits& l
   return packing;
 }
 
-// Voids with roofs are packed on the CPU alone: their search takes more registers than a CUDA thread has.
-kernels::AdaptiveResult pack_with_roofs(const kernels::AdaptiveInput& input, const DeviceRequest& device,
-                                        DeviceUse& use) {
-  if (device.kind == DeviceRequest::Kind::cuda) {
-    throw UsageError("--device cuda: voids with roofs are packed on the CPU only",
-                     "leave out --device, or let no void need a roof: --max-radius " +
-                         fmt::format("{:g}", std::floor(input.parameters.roof.widest_ball * 100) / 100) +
-                         " or less");
-  }
-  const bool one_thread = device.kind == DeviceRequest::Kind::cpu_one_thread;
-  use = {"cpu", device.kind == DeviceRequest::Kind::automatic ? "voids with roofs are packed on the CPU only"
-                                                              : "asked for"};
-  return one_thread ? kernels::pack_adaptive_with_roofs(kernels::SerialExecutor{}, input)
-                    : kernels::pack_adaptive_with_roofs(kernels::TbbExecutor{}, input);
+template <typename Executor>
+kernels::AdaptiveResult pack_with(const Executor& executor, const kernels::AdaptiveInput& input,
+                                  bool has_roofs) {
+  return has_roofs ? kernels::pack_adaptive_with_roofs(executor, input)
+                   : kernels::pack_adaptive(executor, input);
 }
 
 }  // namespace
@@ -133,17 +123,16 @@ Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const Adapt
   if (mesh.triangles.empty() || options.max_count == 0) return {{}, limits, {}, {}};
   const kernels::AdaptiveInput input = input_for(mesh, limits, options, monitor);
   DeviceUse use;
-  if (limits.roof.shapes(limits.max_radius)) {
-    Packing packing = packing_of(pack_with_roofs(input, device, use), limits);
-    packing.device = std::move(use);
-    return packing;
-  }
+  const bool has_roofs = limits.roof.shapes(limits.max_radius);
   const auto on_cpu = [&](DeviceRequest::Kind kind) {
     return kind == DeviceRequest::Kind::cpu_one_thread
-               ? kernels::pack_adaptive(kernels::SerialExecutor{}, input)
-               : kernels::pack_adaptive(kernels::TbbExecutor{}, input);
+               ? pack_with(kernels::SerialExecutor{}, input, has_roofs)
+               : pack_with(kernels::TbbExecutor{}, input, has_roofs);
   };
-  const auto on_cuda = [&](int index) { return kernels::pack_adaptive_on_cuda(index, input); };
+  const auto on_cuda = [&](int index) {
+    return has_roofs ? kernels::pack_adaptive_with_roofs_on_cuda(index, input)
+                     : kernels::pack_adaptive_on_cuda(index, input);
+  };
   Packing packing = packing_of(run_on_device(device, estimate_work(mesh, input.volume, limits, options),
                                              monitor, use, on_cpu, on_cuda),
                                limits);

@@ -25,10 +25,10 @@ struct AdaptiveOptions {
 // Every sphere has at least `wall` and `gap` in fp64 (wall and gap are those of `limits`; max_radius may be
 // infinite), lies where the winding number is 1, and is listed with those placed before it first. The result
 // is the same to the bit on any device and for any number of threads. Voids that need roofs are packed with
-// them, on the CPU alone.
+// them.
 //   mesh: closed (Inspection::closed)
 // Throws UsageError for limits that contradict each other or would never end (no min_radius, count or
-// density), and for voids with roofs on a CUDA device.
+// density).
 Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options,
                       Monitor& monitor, const DeviceRequest& device = {});
 

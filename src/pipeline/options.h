@@ -46,6 +46,8 @@ struct PackingRequest {
   std::filesystem::path spheres;  // of the method `given`
   AdaptiveOptions stop;           // when the adaptive method stops; the hexagonal one has no such choice
   DeviceRequest device;
+  // If given, `limits.min_radius` is the least with which a void saves filament in this print.
+  std::optional<PrintSettings> pays_in = std::nullopt;
 };
 
 struct PackOptions {

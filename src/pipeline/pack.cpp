@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/roof.h"
 #include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "packing/verify.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
 #include "pipeline/job_log.h"
+#include "pipeline/print_prediction.h"
 #include "pipeline/sphere_table.h"
 
 namespace aerate {
@@ -66,7 +68,7 @@ void require_no_roofs(const PackingLimits& limits) {
                   limits.max_radius, limits.roof.bridge()),
       fmt::format("give --max-radius {:g} or less, or --packing adaptive; with --bridge {:g} spheres of this "
                   "size stay as they are",
-                  std::floor(limits.roof.widest_ball * 100) / 100, std::ceil(2 * limits.max_radius)));
+                  largest_without_roof(limits.roof), std::ceil(2 * limits.max_radius)));
 }
 
 Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor& monitor) {
@@ -83,7 +85,8 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
 }
 
 // Says what would fit, and which limit stands in the way.
-[[noreturn]] void refuse_empty(const PreparedModel& model, const PackingLimits& limits) {
+[[noreturn]] void refuse_empty(const PreparedModel& model, const PackingRequest& request) {
+  const PackingLimits& limits = request.limits;
   const std::string file = model.input.path.filename().string();
   const Sphere largest = largest_inscribed_sphere(model.mesh);
   // Rounded first, so that nothing reads as -0.0.
@@ -103,12 +106,29 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
                   limits.min_radius)
             : fmt::format("give a --wall well below {:.3g} mm", largest.radius));
   }
+  if (fitting < limits.min_radius && request.pays_in) {
+    throw NothingToRemoveError(
+        fmt::format(
+            "{}: nothing would be saved: at {:g} % infill a void takes less filament than it saves only "
+            "above a radius of {:.2f} mm, and with a wall of {:.3g} mm the largest that fits has "
+            "radius {:.3g} mm, near {}",
+            file, 100 * request.pays_in->infill, limits.min_radius, limits.wall, fitting, place),
+        where_voids_pay(fitting, *request.pays_in));
+  }
   if (fitting < limits.min_radius) {
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: with a wall of {:.3g} mm the largest sphere that fits has radius "
                     "{:.3g} mm, near {}, which is less than --min-radius {:.3g} mm",
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --wall or --min-radius");
+  }
+  if (request.method == PackingMethod::adaptive) {
+    throw NothingToRemoveError(
+        fmt::format(
+            "{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near {}, "
+            "but without the roof that it needs above a ceiling wider than --bridge {:g} mm",
+            file, limits.wall, fitting, place, limits.roof.bridge()),
+        "give a smaller --min-radius or --wall, or a larger --bridge");
   }
   throw NothingToRemoveError(
       fmt::format("{}: nothing to remove: no place of the packing's lattice fits, although with a wall of "
@@ -128,7 +148,7 @@ Packing pack_model(const PreparedModel& model, const PackingRequest& request, Mo
   monitor.stage("verify");
   packing = verify_packing(model.mesh, std::move(packing));
   monitor.check_interrupted();
-  if (packing.spheres.empty()) refuse_empty(model, request.limits);
+  if (packing.spheres.empty()) refuse_empty(model, request);
 
   if (model.inspection.parts_overlap() && packing.statistics.overlapped_region > 0)
     monitor.notice(

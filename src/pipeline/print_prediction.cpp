@@ -36,8 +36,7 @@ constexpr const char* kOtherWays =
           "nothing would be saved: at {:g} % infill a void takes less filament than it saves only {}, since "
           "walls and skins are printed round it, and the largest allowed is {:g} mm (--max-radius)",
           in_percent(settings.infill), above, limits.max_radius),
-      fmt::format("voids of {:g} mm {}; {}", limits.max_radius,
-                  saving_infill(break_even_infill(limits.max_radius, settings)), kOtherWays));
+      where_voids_pay(limits.max_radius, settings));
 }
 
 std::string change_in_words(const PrintPrediction& prediction) {
@@ -51,6 +50,11 @@ std::string change_in_words(const PrintPrediction& prediction) {
 
 bool prints_filament(const HollowOptions& options) {
   return options.packing.process.process.drainage == Drainage::not_needed;
+}
+
+std::string where_voids_pay(double radius, const PrintSettings& settings) {
+  return fmt::format("voids of {:.2g} mm {}; {}", radius, saving_infill(break_even_infill(radius, settings)),
+                     kOtherWays);
 }
 
 PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptions& options,
@@ -68,6 +72,7 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
       "made",
       in_percent(settings.infill), raised));
   request.limits.min_radius = std::min(raised, request.limits.max_radius);
+  request.pays_in = settings;
   for (LimitOrigin& origin : request.process.origins) {
     if (origin.limit != Limit::min_radius) continue;
     origin.value = request.limits.min_radius;

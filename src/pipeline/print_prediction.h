@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/monitor.h"
 #include "core/solid.h"
@@ -32,6 +33,9 @@ bool prints_filament(const HollowOptions& options);
 // for given spheres. Throws NothingToRemoveError with the figures if even the largest void would not pay.
 PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptions& options,
                                        Monitor& monitor);
+
+// "voids of 3.5 mm save above 62 % infill", and what else there is to do.
+std::string where_voids_pay(double radius, const PrintSettings& settings);
 
 // `outer`: the surface of `solid` without the voids. Throws NothingToRemoveError if the print is described
 // and would become heavier, unless the options allow it; then it is a notice.

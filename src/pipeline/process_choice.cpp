@@ -107,6 +107,7 @@ ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>
     if (!overridden) {
       chosen.value = value_of(process, limit);
       chosen.source = process[limit]->source;
+      chosen.is_default = true;
     }
     choice.origins.push_back(chosen);
   };
@@ -127,6 +128,17 @@ ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>
     require_printable(process, choice.origins[1], Limit::least_gap);
   }
   return choice;
+}
+
+void keep_to_balls_without_roofs(ProcessChoice& choice) {
+  const PackingLimits limits = packing_limits(choice);
+  if (!limits.roof.shapes(limits.max_radius)) return;
+  for (LimitOrigin& origin : choice.origins) {
+    if (origin.limit != Limit::max_radius || !origin.is_default) continue;
+    origin.value = largest_without_roof(limits.roof);
+    origin.origin = "the largest of a lattice that need no roof";
+    origin.source.clear();
+  }
 }
 
 void warn_of_trapped_material(const Process& process, Monitor& monitor) {

@@ -15,6 +15,7 @@ struct LimitOrigin {
   double value = 0;
   std::string origin;  // "default of fdm", "command line", "configuration file"
   std::string source;  // for a default: who says so
+  bool is_default = false;
 };
 
 // Which way is up while a model is printed.
@@ -56,6 +57,10 @@ enum class ProcessCheck {
 // The process's limits with those given in their place. Throws UsageError for limits that contradict each
 // other or that this process cannot print, and for an overhang without a bridge or the other way round.
 ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>& given, ProcessCheck check);
+
+// For a lattice, whose balls have no room for roofs: unless the user gave the largest radius, it becomes that
+// of the largest balls that need none.
+void keep_to_balls_without_roofs(ProcessChoice& choice);
 
 // What the user should know about closed voids in this process, if anything.
 void warn_of_trapped_material(const Process& process, Monitor& monitor);

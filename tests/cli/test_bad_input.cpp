@@ -327,7 +327,7 @@ TEST(BadInput, NumbersThatMakeNoSense) {
   refused({"--gap", "-0.5"}, "-0.5 mm");
   refused({"--max-radius", "0"}, "0 mm");
   refused({"--min-radius", "0"}, "0 mm");
-  refused({"--min-radius", "5"}, "more than --max-radius 3.5 mm");
+  refused({"--min-radius", "30"}, "more than --max-radius 25 mm");
   refused({"--tolerance", "0"}, "0 mm");
   refused({"--tolerance", "0.5"}, "--min-radius 0.62 mm");
   refused({"--scale", "0"}, "more than 0");

@@ -73,8 +73,8 @@ TEST(ProcessOptions, VoidsGetRoofsWhereTheProcessLimitsCeilings) {
   EXPECT_GE(wide["ceilings"]["roofs"], 1);
   EXPECT_EQ(wide["ceilings"]["flatter_than_degrees"], 50);
   EXPECT_LE(wide["ceilings"]["widest_mm"], 5.05);
-  // The default radius has ceilings that a printer bridges.
-  EXPECT_EQ(report_of(job, {})["ceilings"]["roofs"], 0);
+  EXPECT_GE(report_of(job, {})["ceilings"]["roofs"], 1);
+  EXPECT_EQ(report_of(job, {"--max-radius", "3.53"})["ceilings"]["roofs"], 0);
   EXPECT_GE(report_of(job, {"--process", "metal"})["ceilings"]["roofs"], 1);
   for (const char* process : {"sla", "sls"}) {
     const Json report = report_of(job, {"--process", process});
@@ -112,10 +112,26 @@ TEST(ProcessOptions, LimitsForCeilingsThatMakeNoRoofAreRefused) {
   expect_refused(job, {"--process", "sls", "--bridge", "5"}, kUsage, {"sls", "--overhang"});
   expect_refused(job, {"--packing", "hexagonal", "--max-radius", "5"}, kUsage,
                  {"no room for roofs", "--max-radius 3.53", "--bridge 10"});
-  expect_refused(job, {"--device", "cuda", "--max-radius", "9"}, kUsage, {"on the CPU only"});
   const auto without_roofs = job.input("spheres.csv", "x,y,z,radius,kind\n20,20,28,9.5,adaptive\n");
   expect_refused(job, {"--spheres", without_roofs, "--max-radius", "10"}, kUnreadable,
                  {"with the roofs that", "--bridge"});
+}
+
+TEST(ProcessOptions, ALatticeIsMadeOfSpheresThatNeedNoRoofUnlessTheirSizeIsGiven) {
+  const Job job;
+  const Json report = report_of(job, {"--packing", "hexagonal"});
+  EXPECT_EQ(report["limits"]["max_radius_mm"], 3.53);
+  EXPECT_TRUE(contains(report["process"].dump(), "the largest of a lattice that need no roof"));
+  EXPECT_EQ(report["ceilings"]["roofs"], 0);
+  EXPECT_GE(report["voids"]["count"], 1);
+  const Json wide = report_of(job, {"--packing", "hexagonal", "--bridge", "12"});
+  EXPECT_EQ(wide["limits"]["max_radius_mm"], 8.48);
+}
+
+TEST(ProcessOptions, WhereOnlyTheRoofFindsNoRoomTheErrorSaysSo) {
+  const Job job;
+  // The cube of 40 mm holds a ball of 18.8 mm beside the wall, and no roof above it.
+  expect_refused(job, {"--min-radius", "18.5"}, kNothing, {"18.8 mm fits", "without the roof", "--bridge"});
 }
 
 TEST(ProcessOptions, WhatStandsIsSeenInTheDirectionOfThePrint) {

@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "core/roof.h"
 #include "mesh/load.h"
 #include "packing/adaptive.h"
 #include "tests/cuda/cuda_test.h"
@@ -38,6 +39,18 @@ TEST_F(AdaptiveCuda, PacksOverlappingPartsAsTheCpuDoes) {
   expect_same_on_cuda(
       test::join(test::make_box({0, 0, 0}, {10, 10, 10}), test::make_box({5, 5, 5}, {15, 15, 15})),
       {0.5, 0.3, 0.7, 4}, {}, 20);
+}
+
+TEST_F(AdaptiveCuda, PacksVoidsWithRoofsAsTheCpuDoes) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  PackingLimits limits{0.2, 0.1, 0.5, 10, make_roof({.degrees = 45, .bridge = 0.8, .up = {0, 0, 1}})};
+  ASSERT_TRUE(limits.roof.shapes(1.0));
+  expect_same_on_cuda(torus, limits, {}, 20);
+  limits.roof = make_roof({.degrees = 60, .bridge = 0, .up = {1, -2, 0.5}});
+  expect_same_on_cuda(torus, limits, {}, 20);
+  // Balls of the largest radius settle before the others are placed.
+  limits.max_radius = 0.7;
+  expect_same_on_cuda(test::make_box({0, 0, 0}, {6, 6, 6}), limits, {}, 20);
 }
 
 TEST_F(AdaptiveCuda, StopsAtACountAndADensityAsTheCpuDoes) {
