@@ -14,6 +14,7 @@ using Json = nlohmann::json;
 
 constexpr int kUsage = 2;
 constexpr int kUnreadable = 3;
+constexpr int kNothing = 5;
 
 Mesh cube_of_40() {
   return make_box({0, 0, 0}, {40, 40, 40});
