@@ -1,0 +1,61 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/segment_distance.h"
+#include "kernels/point_triangle.h"
+
+namespace aerate {
+namespace {
+
+constexpr int kSteps = 400;
+
+Vec3d at(const Segment& s, int i) {
+  return s.start + (s.end - s.start) * (static_cast<double>(i) / kSteps);
+}
+
+// Distances on a grid of points: never less than the true one, and more by half a step at most.
+double sampled(const Segment& a, const Segment& b) {
+  double least = 1e300;
+  for (int i = 0; i <= kSteps; ++i) least = std::min(least, distance_to_point(b, at(a, i)));
+  return least;
+}
+double sampled(const Segment& a, const kernels::Facet& facet) {
+  double least = 1e300;
+  for (int i = 0; i <= kSteps; ++i)
+    least = std::min(least, std::sqrt(kernels::distance_squared_to_facet(at(a, i), facet)));
+  return least;
+}
+
+TEST(SegmentDistance, KnownPlaces) {
+  const Segment along_x{{0, 0, 0}, {2, 0, 0}};
+  EXPECT_DOUBLE_EQ(distance_to_point(along_x, {1, 3, 4}), 5);
+  EXPECT_DOUBLE_EQ(distance_to_point(along_x, {5, 4, 0}), 5);
+  EXPECT_DOUBLE_EQ(distance_between(along_x, {{1, -1, 3}, {1, 1, 3}}), 3);  // inside both
+  EXPECT_DOUBLE_EQ(distance_between(along_x, {{0, 2, 0}, {2, 2, 0}}), 2);   // parallel
+  EXPECT_DOUBLE_EQ(distance_between(along_x, {{5, 4, 0}, {9, 4, 0}}), 5);   // ends
+  const kernels::Facet facet{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+  EXPECT_EQ(distance_to_facet({{1, 1, -1}, {1, 1, 1}}, facet), 0);           // through the inside
+  EXPECT_DOUBLE_EQ(distance_to_facet({{1, 1, 2}, {1, 1, 5}}, facet), 2);     // above it
+  EXPECT_DOUBLE_EQ(distance_to_facet({{-3, 1, -1}, {-3, 1, 1}}, facet), 3);  // beside it
+}
+
+TEST(SegmentDistance, AgreesWithSamplesEverywhere) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  const auto point = [&] { return Vec3d{coordinate(random), coordinate(random), coordinate(random)}; };
+  for (int i = 0; i < 200; ++i) {
+    const Segment a{point(), point()}, b{point(), point()};
+    const double step = length(a.end - a.start) / kSteps;
+    const double exact = distance_between(a, b);
+    EXPECT_LE(exact, sampled(a, b) + 1e-12);
+    EXPECT_GE(exact, sampled(a, b) - step);
+    const kernels::Facet facet{to_float(point()), to_float(point()), to_float(point())};
+    const double to_facet = distance_to_facet(a, facet);
+    EXPECT_LE(to_facet, sampled(a, facet) + 1e-12);
+    EXPECT_GE(to_facet, sampled(a, facet) - step);
+  }
+}
+
+}  // namespace
+}  // namespace aerate
