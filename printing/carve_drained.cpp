@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <tbb/parallel_for.h>
@@ -11,6 +12,7 @@
 #include "printing/ball_template.h"
 #include "printing/cut_surface.h"
 #include "printing/open_ball.h"
+#include "printing/roof_top.h"
 #include "printing/rounding.h"
 
 namespace aerate {
@@ -25,9 +27,14 @@ constexpr int kMostSteps = 10;
 constexpr double kPrismMargin = 0.02;
 constexpr double kPrismBeyond = 1.8;
 
-Sphere shrunk(const Sphere& ball) {
+// Edges of a roof's circle, in the least distances of openings from it. With 2 an opening's rim could be as
+// near to the middle of an edge as its ends are.
+constexpr double kEdgePerSpacing = 1.5;
+
+Sphere shrunk(const Roof& roof, const Sphere& ball) {
   Sphere smaller = ball;
-  smaller.radius -= rounding_margin(ball);
+  smaller.radius -=
+      roof.shapes(ball.radius) ? ball.radius * void_shrinkage(roof, ball) : rounding_margin(ball);
   return smaller;
 }
 
@@ -44,12 +51,41 @@ std::size_t sides_of(const Tube& tube, double tolerance) {
   return tube_sides(tube.radius, tolerance / 8);
 }
 
-Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up, double tolerance) {
+Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof, double tolerance) {
   Opening opening{shrunk(tube), end, {}};
-  opening.ring = ring_on_ball(opening.tube, end, shrunk(ball), up, sides_of(tube, tolerance));
+  opening.ring = ring_on_ball(opening.tube, end, shrunk(roof, ball), roof.up, sides_of(tube, tolerance));
   // Counter-clockwise seen from outside the ball.
   if (end == TubeEnd::end) std::reverse(opening.ring.begin(), opening.ring.end());
   return opening;
+}
+
+// The circle at which the roof of a void begins, as if an upright tube came out of its ball there. Its edges
+// are short enough for the openings beside it, of which `thinnest` is the least radius.
+Opening shoulder_of(const Sphere& ball, const Roof& roof, double thinnest, double tolerance) {
+  const Sphere smaller = shrunk(roof, ball);
+  const Tube tube{smaller.centre, smaller.centre + roof.up, smaller.radius * roof.cosine};
+  std::size_t sides = tube_sides(tube.radius, tolerance / 8);
+  while (2 * tube.radius * std::sin(std::numbers::pi / static_cast<double>(sides)) >
+         kEdgePerSpacing * kOpeningSpacingShare * thinnest)
+    sides += 2;
+  return {tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, smaller, roof.up, sides)};
+}
+
+// Puts the roof on a ball that is open along its shoulder, where the ring begins at vertex `first`.
+void close_above(OpenedBall& opened, std::size_t first, std::size_t count, const Sphere& ball,
+                 const Roof& roof, double tolerance) {
+  const RoofTop top = roof_top_of(roof, ball, tolerance);
+  const std::size_t rim = opened.positions.size();
+  const double scale = 1 - void_shrinkage(roof, ball);
+  const Vec3d middle = ball.centre + roof.up * (roof.top(ball.radius) * scale);
+  if (top == RoofTop::apex) opened.positions.push_back(middle);
+  for (std::size_t i = 0; i < count && top == RoofTop::flat; ++i) {
+    const Vec3d offset = opened.positions[first + i] - ball.centre;
+    const Vec3d aside = offset - roof.up * dot(offset, roof.up);
+    opened.positions.push_back(middle + aside * (roof.flat_radius() / (ball.radius * roof.cosine)));
+  }
+  const std::vector<Triangle> added = roof_triangles(top, first, count, rim);
+  opened.triangles.insert(opened.triangles.end(), added.begin(), added.end());
 }
 
 CuttingPrism prism_of(const Tube& tube, const Opening& opening) {
@@ -84,11 +120,17 @@ void apply(const SurfaceCut& cut, Mesh& mesh) {
   mesh.positions.insert(mesh.positions.end(), cut.new_positions.begin(), cut.new_positions.end());
 }
 
-// A ball with its openings, and where its vertices begin in the result.
+// A ball with its openings, that of its roof last, and where its vertices begin in the result.
 struct Part {
   std::vector<Opening> openings;
   OpenedBall surface;
   std::uint32_t first_vertex = 0;
+
+  std::size_t ring_vertex_count() const {
+    std::size_t count = 0;
+    for (const Opening& opening : openings) count += opening.ring.size();
+    return count;
+  }
 };
 
 // Where the ring of an opening begins among the vertices of its ball.
@@ -108,6 +150,9 @@ class DrainedCarver {
     }
     for (const EscapeHole& hole : plan.holes)
       hole_rings_.push_back(add_opening(hole.from, hole.tube, TubeEnd::start));
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (plan.roof.shapes(balls[i].radius)) add_shoulder(parts_[i], balls[i]);
+    }
   }
 
   DrainedSolid carve(const Mesh& outer) {
@@ -129,10 +174,28 @@ class DrainedCarver {
  private:
   RingPlace add_opening(std::uint32_t ball, const Tube& tube, TubeEnd end) {
     Part& part = parts_[ball];
-    std::uint32_t first = 0;
-    for (const Opening& opening : part.openings) first += static_cast<std::uint32_t>(opening.ring.size());
-    part.openings.push_back(opening_of(tube, end, balls_[ball], plan_.up, tolerance_));
-    return {ball, first};
+    const RingPlace place{ball, static_cast<std::uint32_t>(part.ring_vertex_count())};
+    part.openings.push_back(opening_of(tube, end, balls_[ball], plan_.roof, tolerance_));
+    return place;
+  }
+
+  void add_shoulder(Part& part, const Sphere& ball) {
+    double thinnest = ball.radius;
+    for (const Opening& opening : part.openings) thinnest = std::min(thinnest, opening.tube.radius);
+    part.openings.push_back(shoulder_of(ball, plan_.roof, thinnest, tolerance_));
+  }
+
+  // Opens a ball and puts its roof on. False if that takes a finer template.
+  bool make_surface(Part& part, const Sphere& ball, std::span<const Vec3d> directions) const {
+    auto opened = open_ball(shrunk(plan_.roof, ball), directions, part.openings);
+    if (!opened || opened->nearest < ball.radius - tolerance_ + void_rounding_margin(plan_.roof, ball))
+      return false;
+    if (plan_.roof.shapes(ball.radius)) {
+      const std::size_t count = part.openings.back().ring.size();
+      close_above(*opened, part.ring_vertex_count() - count, count, ball, plan_.roof, tolerance_);
+    }
+    part.surface = std::move(*opened);
+    return true;
   }
 
   void open_balls() {
@@ -149,12 +212,8 @@ class DrainedCarver {
       for (const Sphere& ball : wanted) templates.push_back(&ladder[ladder.level_for(ball, tolerance)]);
       std::vector<char> is_done(pending.size(), 0);
       tbb::parallel_for(std::size_t{0}, pending.size(), [&](std::size_t i) {
-        const Sphere& ball = balls_[pending[i]];
-        Part& part = parts_[pending[i]];
-        auto opened = open_ball(shrunk(ball), templates[i]->directions, part.openings);
-        if (!opened || opened->nearest < ball.radius - tolerance_ + rounding_margin(ball)) return;
-        part.surface = std::move(*opened);
-        is_done[i] = 1;
+        const std::size_t ball = pending[i];
+        is_done[i] = make_surface(parts_[ball], balls_[ball], templates[i]->directions) ? 1 : 0;
       });
       std::vector<std::size_t> left;
       for (std::size_t i = 0; i < pending.size(); ++i) {
@@ -183,7 +242,8 @@ class DrainedCarver {
       std::size_t opening = 0;
       for (std::uint32_t first = 0; first < hole_rings_[i].first; ++opening)
         first += static_cast<std::uint32_t>(parts_[hole.from].openings[opening].ring.size());
-      const auto cut = cut_surface(mesh, prism_of(hole.tube, parts_[hole.from].openings[opening]));
+      const CuttingPrism prism = prism_of(hole.tube, parts_[hole.from].openings[opening]);
+      const auto cut = cut_surface(mesh, facets_near(mesh, axis_of(prism), reach_of(prism)), prism);
       if (!cut)
         throw FailureError("the surface cannot be cut for an escape hole near (" +
                                std::to_string(hole.tube.end.x) + ", " + std::to_string(hole.tube.end.y) +
@@ -271,25 +331,29 @@ class DrainedCarver {
 
 }  // namespace
 
-bool can_cut(const Mesh& outer, const WayOut& way, std::span<const WayOut> others, Vec3d up,
+bool can_cut(const FacetsNear& outer, const WayOut& way, std::span<const WayOut> others, const Roof& roof,
              double tolerance) {
   const auto prism = [&](const WayOut& out) {
-    return prism_of(out.tube, opening_of(out.tube, TubeEnd::start, out.ball, up, tolerance));
+    return prism_of(out.tube, opening_of(out.tube, TubeEnd::start, out.ball, roof, tolerance));
   };
   const CuttingPrism own = prism(way);
-  const std::vector<std::uint32_t> near = triangles_near(outer, own);
+  const std::vector<std::uint32_t> near = outer.find(axis_of(own), reach_of(own));
   const bool shares_triangles = std::any_of(others.begin(), others.end(), [&](const WayOut& other) {
-    const std::vector<std::uint32_t> theirs = triangles_near(outer, prism(other));
+    const CuttingPrism cut = prism(other);
+    const std::vector<std::uint32_t> theirs = outer.find(axis_of(cut), reach_of(cut));
     return std::find_first_of(near.begin(), near.end(), theirs.begin(), theirs.end()) != near.end();
   });
-  if (!shares_triangles) return cut_surface(outer, own).has_value();
-  Mesh mesh = outer;
+  if (!shares_triangles) return cut_surface(outer.mesh(), near, own).has_value();
+  Mesh mesh = outer.mesh();
+  const auto cut_now = [&mesh](const CuttingPrism& cut) {
+    return cut_surface(mesh, facets_near(mesh, axis_of(cut), reach_of(cut)), cut);
+  };
   for (const WayOut& other : others) {
-    const auto cut = cut_surface(mesh, prism(other));
+    const auto cut = cut_now(prism(other));
     if (!cut) return false;
     apply(*cut, mesh);
   }
-  return cut_surface(mesh, own).has_value();
+  return cut_now(own).has_value();
 }
 
 DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,

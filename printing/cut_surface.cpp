@@ -11,8 +11,6 @@
 #include <map>
 #include <set>
 
-#include "core/segment_distance.h"
-
 namespace aerate {
 namespace {
 
@@ -117,10 +115,10 @@ std::optional<FaceNumbers> two_parts(SurfaceMesh& mesh, const EdgeFlags& marked)
 
 class Cut {
  public:
-  Cut(const Mesh& mesh, const CuttingPrism& prism) : mesh_(mesh), prism_(prism) {}
+  Cut(const Mesh& mesh, std::span<const std::uint32_t> near, const CuttingPrism& prism)
+      : mesh_(mesh), near_(near), prism_(prism) {}
 
   std::optional<SurfaceCut> make() {
-    near_ = triangles_near(mesh_, prism_);
     auto patch = take_patch(mesh_, near_, prism_.axis);
     if (!patch) return std::nullopt;
     SurfaceMesh prism = make_prism(prism_);
@@ -253,37 +251,25 @@ class Cut {
   }
 
   const Mesh& mesh_;
+  std::span<const std::uint32_t> near_;
   const CuttingPrism& prism_;
-  std::vector<std::uint32_t> near_;
   std::map<Point, std::uint32_t> index_of_;
   SurfaceCut cut_;
 };
 
 }  // namespace
 
-std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const CuttingPrism& prism) {
-  const Segment axis{prism.start, prism.start + prism.axis * prism.length};
-  const double reach = prism.radius + kMargin;
-  const Vec3d margin{reach, reach, reach};
-  const Vec3d lower = min_of(axis.start, axis.end) - margin;
-  const Vec3d upper = max_of(axis.start, axis.end) + margin;
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& t = mesh.triangles[i];
-    const Vec3f a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
-    const Vec3d least = to_double(min_of(a, min_of(b, c)));
-    const Vec3d most = to_double(max_of(a, max_of(b, c)));
-    if (least.x > upper.x || least.y > upper.y || least.z > upper.z || most.x < lower.x || most.y < lower.y ||
-        most.z < lower.z) {
-      continue;
-    }
-    if (distance_to_facet(axis, {a, b, c}) < reach) near.push_back(i);
-  }
-  return near;
+Segment axis_of(const CuttingPrism& prism) {
+  return {prism.start, prism.start + prism.axis * prism.length};
 }
 
-std::optional<SurfaceCut> cut_surface(const Mesh& mesh, const CuttingPrism& prism) {
-  return Cut(mesh, prism).make();
+double reach_of(const CuttingPrism& prism) {
+  return prism.radius + kMargin;
+}
+
+std::optional<SurfaceCut> cut_surface(const Mesh& mesh, std::span<const std::uint32_t> near,
+                                      const CuttingPrism& prism) {
+  return Cut(mesh, near, prism).make();
 }
 
 }  // namespace aerate

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/segment_distance.h"
 
 namespace aerate {
 
@@ -26,14 +27,16 @@ struct SurfaceCut {
   std::vector<Triangle> sides;         // the prism from its ring to the surface, facing the axis
 };
 
-// The triangles that a prism may meet, ascending.
-std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const CuttingPrism& prism);
+// The triangles that a prism may meet are nearer to this axis than that (core/facets_near.h).
+Segment axis_of(const CuttingPrism& prism);
+double reach_of(const CuttingPrism& prism);
 
-// Cuts a surface by a prism: CGAL's corefinement of the triangles that it meets. Every other triangle stays
-// as it is; it does not matter what flaws there are elsewhere. nullopt if the prism does not leave the solid
-// through one piece of 2-manifold surface that faces its end all over, or if the new triangles would not be
-// sound when they are rounded to fp32: projected along the axis, each has to have a positive area, so that
-// they cover what they replace exactly once.
-std::optional<SurfaceCut> cut_surface(const Mesh& mesh, const CuttingPrism& prism);
+// Cuts a surface by a prism: CGAL's corefinement of the triangles that it may meet, `near`, ascending. Every
+// other triangle stays as it is; it does not matter what flaws there are elsewhere. nullopt if the prism does
+// not leave the solid through one piece of 2-manifold surface that faces its end all over, or if the new
+// triangles would not be sound when they are rounded to fp32: projected along the axis, each has to have a
+// positive area, so that they cover what they replace exactly once.
+std::optional<SurfaceCut> cut_surface(const Mesh& mesh, std::span<const std::uint32_t> near,
+                                      const CuttingPrism& prism);
 
 }  // namespace aerate

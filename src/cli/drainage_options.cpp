@@ -73,7 +73,6 @@ std::optional<DrainageRequest> DrainageOptions::request(ProcessChoice& choice) c
     return std::nullopt;
   }
   DrainageRequest request;
-  request.up = choice.direction.up;
   request.channel_radius = diameter(choice, Limit::channel, *channel_option_, channel_) / 2;
   request.hole_radius = diameter(choice, Limit::escape_hole, *hole_option_, hole_) / 2;
   if (request.hole_radius < request.channel_radius) {

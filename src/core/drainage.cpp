@@ -12,6 +12,10 @@ Vec3d normalised(Vec3d v) {
 }
 
 constexpr std::size_t kFewestSides = 8;
+
+// Points of an opening's rim that are held against a roof. What is between them is higher by a thousandth of
+// the tube's radius at most, which the spacing of openings covers.
+constexpr std::size_t kRimPoints = 48;
 constexpr std::size_t kMostSides = 256;
 
 }  // namespace
@@ -33,6 +37,31 @@ bool meets_all_round(const Tube& tube, const Sphere& ball) {
   const Vec3d to_start = tube.start - ball.centre;
   const Vec3d offset = to_start - axis * dot(to_start, axis);
   return length(offset) + tube.radius <= kWidestTubeShare * ball.radius;
+}
+
+bool opens_below_roof(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof) {
+  if (!roof.shapes(ball.radius)) return true;
+  const double shoulder = roof.shoulder(ball.radius), aside = ball.radius * roof.cosine;
+  const double spacing = kOpeningSpacingShare * tube.radius;
+  for (const Vec3d p : ring_on_ball(tube, end, ball, roof.up, kRimPoints)) {
+    const Vec3d offset = p - ball.centre;
+    const double height = dot(offset, roof.up);
+    if (height >= shoulder) return false;
+    // Distance from the point of the circle above or below it.
+    if (std::hypot(length(offset - roof.up * height) - aside, shoulder - height) < spacing) return false;
+  }
+  return true;
+}
+
+double ceiling_width(const Tube& tube, const Roof& roof) {
+  const double rise = dot(normalised(tube.end - tube.start), roof.up);
+  const double lean = std::sqrt(std::max(0.0, 1 - rise * rise));  // sine of the angle from the vertical
+  if (lean <= roof.sine) return 0;
+  return 2 * tube.radius * std::sqrt(1 - roof.sine * roof.sine / (lean * lean));
+}
+
+bool is_bridged(const Tube& tube, const Roof& roof) {
+  return !roof.limits_ceilings() || ceiling_width(tube, roof) <= roof.bridge() * (1 + 1e-9);
 }
 
 std::vector<Vec3d> ring_on_ball(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/roof.h"
 #include "kernels/sphere.h"
 #include "kernels/vec.h"
 
@@ -15,7 +16,6 @@ namespace aerate {
 struct DrainageRequest {
   double channel_radius = 0;  // of the channels between voids
   double hole_radius = 0;     // of the escape holes
-  Vec3d up{0, 0, 1};          // in print orientation, a unit vector
   // Where escape holes are to open, near the surface. Fewer than two are supplemented.
   std::vector<Vec3d> escape_holes;
 };
@@ -49,7 +49,7 @@ struct TrappedPools {
 };
 
 struct DrainagePlan {
-  Vec3d up{0, 0, 1};
+  Roof roof = {};  // of the voids; its `up` is against gravity in print orientation
   std::vector<Channel> channels;
   std::vector<EscapeHole> holes;  // at least two for each network
   std::size_t network_count = 0;  // sets of voids that channels join
@@ -71,6 +71,22 @@ TubeFrame frame_of(const Tube& tube, Vec3d up);
 
 // Does the tube meet the ball all round, at a sound angle?
 bool meets_all_round(const Tube& tube, const Sphere& ball);
+
+// A share of the radius of a tube by which its opening keeps away from those of others on the same ball, and
+// from the circle at which a roof begins: more than half the edge of an octagon, so that no edge of one rim
+// cuts another.
+inline constexpr double kOpeningSpacingShare = 0.4;
+
+// Does the tube, which meets the ball all round, open into it below the cone of its roof, if it has one, by
+// the spacing of openings? The void is convex, so the tube's lines then meet its cone nowhere.
+bool opens_below_roof(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof);
+
+// Width, projected along `roof.up`, of the part of a tube's ceiling that leans further than the overhang
+// angle: a tube that leans by less has none.
+double ceiling_width(const Tube& tube, const Roof& roof);
+
+// Needs no support, or the printer bridges it?
+bool is_bridged(const Tube& tube, const Roof& roof);
 
 // Where the lines of a tube, `sides` of them evenly round its axis and the first of them on its lower side,
 // leave the ball (at the tube's start) or enter it (at its end). All points lie on the sphere; they run

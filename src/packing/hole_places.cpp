@@ -25,6 +25,9 @@ constexpr double kLongestInWalls = 3;
 constexpr std::size_t kMostBalls = 48;
 constexpr int kDirections = 64;
 
+// Places of the axis in each direction.
+constexpr std::size_t kPoints = 3;
+
 // A ball is roomy if the distance of its centre from the hole's rim is at least this share of that between
 // the axes of the hole and of a channel: the two then open into it at 113 degrees from each other or less.
 constexpr double kRoomyShare = 0.6;
@@ -97,30 +100,58 @@ bool HolePlaces::reach_surface(EscapeHole& hole) const {
 }
 
 double HolePlaces::showing(Vec3d place) const {
-  const Vec3d up = request_.up;
+  const Vec3d up = limits_.roof.up;
   const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d back = normalised(cross(up, side));
   const Vec3d normal = clearance_.normal_near(place);
   return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
 }
 
-bool HolePlaces::is_sound(const EscapeHole& hole) const {
+bool HolePlaces::is_sound(const EscapeHole& hole) {
+  if (!clearance_.keeps_gap_to_tubes(hole.tube, hole.from, hole.from)) return false;
+  const Vec3d start = hole.tube.start, end = hole.tube.end;
+  const auto [known, is_new] = sound_.try_emplace(
+      {static_cast<double>(hole.from), start.x, start.y, start.z, end.x, end.y, end.z}, false);
+  if (is_new) known->second = is_sound_alone(hole);
+  return known->second;
+}
+
+// But for other tubes.
+bool HolePlaces::is_sound_alone(const EscapeHole& hole) const {
   const Tube& tube = hole.tube;
   const Vec3d axis = normalised(tube.end - tube.start);
   const double needed = tube.radius + limits_.wall;
-  if (!clearance_.keeps_wall_on_way_out(tube, kLeastSlope)) return false;
   // Outside there has to be room, as wide as the hole.
   for (const double beyond : {tube.radius, 2 * tube.radius}) {
     const Vec3d p = tube.end + axis * beyond;
-    if (outward_.view().winding_number(p) != 0) return false;
     if (clearance_.to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
+    if (outward_.view().winding_number(p) != 0) return false;
   }
   return clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) &&
-         clearance_.keeps_gap_to_tubes(tube, hole.from, hole.from);
+         clearance_.keeps_wall_on_way_out(tube, kLeastSlope);
 }
 
-std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down,
-                                           double share) const {
+// A point of the axis of a tube that leaves a ball in this direction: through the centre, or halfway or all
+// the way to where its side would graze the ball, lowered in the sense of `down`. Under a roof it is measured
+// from the highest that leaves the ball below it. nullopt if that is the same as the one before.
+std::optional<Vec3d> HolePlaces::start_inside(const Sphere& ball, Vec3d direction, Vec3d down,
+                                              std::size_t point) const {
+  const double farthest = kWidestTubeShare * ball.radius - request_.hole_radius;
+  const double share = static_cast<double>(point) / (kPoints - 1);
+  if (limits_.roof.shapes(ball.radius) && dot(down, limits_.roof.up) > 0) {
+    const auto way = way_below_roof(ball, limits_.roof, direction, request_.hole_radius);
+    if (!way) return std::nullopt;
+    const double highest = std::min(way->highest, 0.0);
+    if (highest < -farthest || (highest == -farthest && point > 0)) return std::nullopt;
+    return ball.centre + way->across * (highest - share * (highest + farthest));
+  }
+  if (farthest * share == 0 && point > 0) return std::nullopt;
+  // Lowered so far that the tube's axis passes the centre at that distance.
+  const double across = std::sqrt(std::max(1e-6, 1 - dot(direction, down) * dot(direction, down)));
+  return ball.centre + down * std::min(farthest * share / across, ball.radius * 0.99);
+}
+
+std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down, double share) {
   const Vec3d up = -down;
   const auto bottom_of = [&](std::uint32_t i) { return dot(spheres_[i].centre, up) - spheres_[i].radius; };
   double lowest = std::numeric_limits<double>::infinity();
@@ -145,40 +176,62 @@ std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls,
   const double height = highest - lowest;
   while (wide.size() > 4 && bottom_of(wide.back()) > lowest + share * height) wide.pop_back();
 
-  const std::vector<Vec3d> directions = directions_about(down);
-  constexpr std::size_t kPoints = 3;
-  struct Place {
-    double cost = std::numeric_limits<double>::infinity();
-    EscapeHole hole;
+  look_at(wide, down);
+  struct Ranked {
+    double cost;
+    const Place* place;
   };
-  std::vector<Place> places(wide.size() * directions.size() * kPoints);
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    const std::uint32_t from = wide[i / (directions.size() * kPoints)];
-    const Vec3d direction = directions[i / kPoints % directions.size()];
-    const Sphere& ball = spheres_[from];
-    const double lower = (kWidestTubeShare * ball.radius - request_.hole_radius) *
-                         static_cast<double>(i % kPoints) / (kPoints - 1);
-    if (lower == 0 && i % kPoints > 0) return;
-    // Lowered so far that the tube's axis passes the centre at that distance.
-    const double across = std::sqrt(std::max(1e-6, 1 - dot(direction, down) * dot(direction, down)));
-    const double shift = std::min(lower / across, ball.radius * 0.99);
-    const auto tube = tube_out_of(ball, ball.centre + down * shift, direction, 1, request_.hole_radius);
-    if (!tube) return;
-    Place& place = places[i];
-    place.hole = {from, *tube, 0};
-    if (!reach_surface(place.hole)) return;
-    place.cost = sill_of_hole(place.hole, ball, up) - lowest +
-                 kShowingWeight * height * showing(place.hole.tube.end) +
-                 kLengthWeight * length(place.hole.tube.end - place.hole.tube.start);
-  });
-  std::stable_sort(places.begin(), places.end(),
-                   [](const Place& a, const Place& b) { return a.cost < b.cost; });
-  std::vector<EscapeHole> holes;
-  for (const Place& place : places) {
-    if (place.cost == std::numeric_limits<double>::infinity()) break;
-    holes.push_back(place.hole);
+  std::vector<Ranked> ranked;
+  for (const std::uint32_t i : wide) {
+    for (const Place& place : *places_of(down)[i])
+      ranked.push_back({place.sill - lowest + kShowingWeight * height * place.showing +
+                            kLengthWeight * length(place.hole.tube.end - place.hole.tube.start),
+                        &place});
   }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
+  std::vector<EscapeHole> holes;
+  for (const Ranked& found : ranked) holes.push_back(found.place->hole);
   return holes;
+}
+
+HolePlaces::PlacesByBall& HolePlaces::places_of(Vec3d down) {
+  return places_[dot(down, limits_.roof.up) > 0 ? 1 : 0];
+}
+
+// Finds the places of those balls that have not been looked at.
+void HolePlaces::look_at(std::span<const std::uint32_t> balls, Vec3d down) {
+  PlacesByBall& places = places_of(down);
+  places.resize(spheres_.size());
+  const std::vector<Vec3d> directions = directions_about(down);
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+    std::optional<std::vector<Place>>& own = places[balls[i]];
+    if (own) return;
+    own.emplace();
+    for (const Vec3d direction : directions) {
+      for (std::size_t point = 0; point < kPoints; ++point) {
+        const auto place = place_of(balls[i], direction, down, point);
+        if (place) own->push_back(*place);
+      }
+    }
+  });
+}
+
+std::optional<HolePlaces::Place> HolePlaces::place_of(std::uint32_t from, Vec3d direction, Vec3d down,
+                                                      std::size_t point) const {
+  const Sphere& ball = spheres_[from];
+  const auto inside = start_inside(ball, direction, down, point);
+  if (!inside) return std::nullopt;
+  const auto tube = tube_out_of(ball, *inside, direction, 1, request_.hole_radius);
+  if (!tube || !opens_below_roof(*tube, TubeEnd::start, ball, limits_.roof) ||
+      !is_bridged(*tube, limits_.roof)) {
+    return std::nullopt;
+  }
+  Place place{{from, *tube, 0}, 0, 0};
+  if (!reach_surface(place.hole)) return std::nullopt;
+  place.sill = sill_of_hole(place.hole, ball, -down);
+  place.showing = showing(place.hole.tube.end);
+  return place;
 }
 
 std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> balls) const {
@@ -205,7 +258,10 @@ std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std:
       if (distance <= ball.radius) continue;
       const auto tube =
           tube_out_of(ball, inside, (on_surface - inside) * (1 / distance), 1, request_.hole_radius);
-      if (!tube) continue;
+      if (!tube || !opens_below_roof(*tube, TubeEnd::start, ball, limits_.roof) ||
+          !is_bridged(*tube, limits_.roof)) {
+        continue;
+      }
       EscapeHole hole{from, *tube, 0};
       if (reach_surface(hole) && length(hole.tube.end - on_surface) < request_.hole_radius)
         holes.push_back(hole);

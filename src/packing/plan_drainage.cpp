@@ -52,6 +52,9 @@ struct Attachment {
 constexpr std::array<Attachment, 7> kAttachments{
     {{0.7, -0.7}, {0.35, -0.35}, {0, 0}, {0, -0.7}, {0.7, 0}, {-0.35, -0.7}, {-0.7, -0.7}}};
 
+// Channels that leave below a roof are moved so many times at most, since that turns them.
+constexpr int kMostShifts = 4;
+
 // More channels than the tree's have to reduce what stays to this share of it.
 constexpr double kLeastGain = 0.7;
 
@@ -91,6 +94,7 @@ class Planner {
           const CanOpen& can_open, Monitor& monitor)
       : spheres_(packing.spheres),
         request_(request),
+        roof_(packing.limits.roof),
         can_open_(can_open),
         monitor_(monitor),
         longest_(std::max(largest_radius(), kLongestInDiameters * 2 * request.channel_radius)),
@@ -98,7 +102,7 @@ class Planner {
                    std::max(longest_, longest_hole(request, packing.limits)),
                    std::max(request.channel_radius, request.hole_radius)),
         places_(model.outward_shells, model.mesh, spheres_, packing.limits, request, clearance_) {
-    plan_.up = request.up;
+    plan_.roof = roof_;
   }
 
   // Throws as `plan_drainage` does.
@@ -122,6 +126,7 @@ class Planner {
 
   double largest_radius() const;
   double volume_of(const Members& members) const;
+  Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const;
   std::optional<Channel> channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const;
   bool is_free(const Channel& channel, std::size_t attachment);
   std::vector<Members> networks();
@@ -147,6 +152,7 @@ class Planner {
 
   std::span<const Sphere> spheres_;
   const DrainageRequest& request_;
+  Roof roof_;
   const CanOpen& can_open_;
   Monitor& monitor_;
   double longest_;
@@ -168,24 +174,44 @@ double Planner::largest_radius() const {
 
 double Planner::volume_of(const Members& members) const {
   double volume = 0;
-  for (const std::uint32_t i : members) volume += volume_below(spheres_[i], request_.up, kInfinity);
+  for (const std::uint32_t i : members) volume += void_volume(roof_, spheres_[i].radius);
   return volume;
 }
 
+// Where a channel from a ball with a roof to a higher place has to start so that it leaves the ball below the
+// roof: `inside`, or so much beside it, across the channel and downwards.
+Vec3d Planner::below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const {
+  if (!roof_.shapes(ball.radius)) return inside;
+  for (int i = 0; i < kMostShifts; ++i) {
+    const Vec3d along = to - inside;
+    const auto way = way_below_roof(ball, roof_, along * (1 / length(along)), request_.channel_radius);
+    if (!way) return inside;
+    const double excess = dot(inside - ball.centre, way->across) - way->highest;
+    if (excess <= 0) return inside;
+    inside = inside - way->across * excess;
+  }
+  return inside;
+}
+
 std::optional<Channel> Planner::channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const {
-  const Vec3d up = request_.up;
+  const Vec3d up = roof_.up;
   const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
   if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
   const Sphere& lower = spheres_[a];
   const Sphere& upper = spheres_[b];
   const Attachment where = kAttachments[attachment];
-  const Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
+  Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
   const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
   // Off the centres only where that leaves a channel which rises from the lower to the upper.
   if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) <= 0)
     return std::nullopt;
+  inside_lower = below_roof(lower, inside_lower, inside_upper);
   const auto tube = tube_between(lower, upper, inside_lower, inside_upper, request_.channel_radius);
-  if (!tube || length(tube->end - tube->start) > longest_) return std::nullopt;
+  if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
+      !opens_below_roof(*tube, TubeEnd::start, lower, roof_) ||
+      !opens_below_roof(*tube, TubeEnd::end, upper, roof_)) {
+    return std::nullopt;
+  }
   return Channel{a, b, *tube};
 }
 
@@ -323,14 +349,14 @@ std::ptrdiff_t Planner::holes_of(std::uint32_t network) const {
 bool Planner::has_low_hole(const Members& members, std::uint32_t network) const {
   double lowest = kInfinity, highest = -kInfinity;
   for (const std::uint32_t i : members) {
-    const double height = dot(spheres_[i].centre, request_.up);
+    const double height = dot(spheres_[i].centre, roof_.up);
     lowest = std::min(lowest, height - spheres_[i].radius);
     highest = std::max(highest, height + spheres_[i].radius);
   }
   std::size_t count = 0;
   for (const EscapeHole& hole : plan_.holes) {
     if (hole.network != network) continue;
-    if (dot(hole.tube.end, request_.up) < (lowest + highest) / 2) return true;
+    if (dot(hole.tube.end, roof_.up) < (lowest + highest) / 2) return true;
     ++count;
   }
   return count >= 2;
@@ -356,10 +382,9 @@ bool Planner::open_network(const Members& members, std::uint32_t network) {
   double most = 0;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     const std::size_t before = plan_.holes.size();
-    if (!is_asked_for_below && !open(candidates, -request_.up, network)) break;
-    if (holes_of(network) < 2) open(candidates, request_.up, network);
-    const std::vector<Candidate> ways =
-        flood(request_.up, [this](const Channel& channel) { place(channel); });
+    if (!is_asked_for_below && !open(candidates, -roof_.up, network)) break;
+    if (holes_of(network) < 2) open(candidates, roof_.up, network);
+    const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
     take_back_channels();
     Members reached;
     for (const std::uint32_t i : members) {
@@ -400,7 +425,7 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
         !request_.escape_holes.empty() || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
     if (!is_worth_it || !open_network(networks[n], n)) leave_out(n);
   }
-  const std::vector<Candidate> ways = flood(request_.up, [this](const Channel& channel) { place(channel); });
+  const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
     Members reached;
     for (const std::uint32_t i : networks[n]) {
@@ -410,7 +435,7 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
       return hole.network == n && ways[hole.from].to == kOutside;
     });
     if (reached.empty()) continue;
-    if (holes_of(n) >= 2 || open(reached, request_.up, n)) {
+    if (holes_of(n) >= 2 || open(reached, roof_.up, n)) {
       ++plan_.network_count;
       for (const std::uint32_t i : networks[n]) {
         if (ways[i].to != kOutside) continue;
@@ -491,14 +516,14 @@ void Planner::take_back_channels() {
 
 // The members of each pool in print orientation, and its volume, the largest first.
 std::vector<std::pair<double, Planner::Members>> Planner::upright_pools() const {
-  const SpillHeights spills = spill_heights(spheres_, plan_, request_.up);
+  const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
   std::vector<std::uint32_t> pool_of(spheres_.size(), kOutside);
   std::map<std::uint32_t, std::pair<double, Members>> pools;
   for (const std::uint32_t i : spills.order) {
     const std::uint32_t next = spills.towards[i];
     pool_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? pool_of[next] : i;
     auto& [volume, members] = pools[pool_of[i]];
-    volume += volume_below(spheres_[i], request_.up, spills.height[i]);
+    volume += volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
     members.push_back(i);
   }
   std::vector<std::pair<double, Members>> sorted;
@@ -515,7 +540,7 @@ void Planner::open_pools(double whole_volume) {
     bool opened = false;
     for (const auto& [volume, members] : upright_pools()) {
       if (volume < kPoolWorthHole * whole_volume) return;
-      opened = open(members, -request_.up, network_of_[members.front()]);
+      opened = open(members, -roof_.up, network_of_[members.front()]);
       if (opened) break;
     }
     if (!opened) return;
@@ -527,12 +552,12 @@ void Planner::open_pools(double whole_volume) {
 void Planner::empty_pools() {
   const std::size_t tree_size = plan_.channels.size();
   const double before = pools_now().after_both;
-  const SpillHeights upright = spill_heights(spheres_, plan_, request_.up);
-  const std::vector<Candidate> ways = flood(-request_.up, [](const Channel&) {});
+  const SpillHeights upright = spill_heights(spheres_, plan_, roof_.up);
+  const std::vector<Candidate> ways = flood(-roof_.up, [](const Channel&) {});
   std::vector<bool> is_on_way(spheres_.size(), false);
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
     if (network_of_[i] == kOutside || upright.height[i] == kInfinity) continue;
-    const double left = volume_below(spheres_[i], request_.up, upright.height[i]);
+    const double left = volume_below(roof_, spheres_[i], roof_.up, upright.height[i]);
     if (left < kPoolWorthWay * volume_of({i})) continue;
     for (std::uint32_t at = i; at != kOutside && ways[at].to != kOutside && !is_on_way[at];
          at = ways[at].from)
@@ -553,11 +578,11 @@ void Planner::leave_out_pools() {
   for (std::size_t round = 0; round < spheres_.size(); ++round) {
     const TrappedPools pools = pools_now();
     if (pools.after_both <= kPoolsAimedAt * pools.total) return;
-    const SpillHeights spills = spill_heights(spheres_, plan_, request_.up);
+    const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
     std::vector<double> whole(spheres_.size(), 0), full(spheres_.size(), 0);
     for (const std::uint32_t i : spills.order) {
       whole[i] = volume_of({i});
-      full[i] = volume_below(spheres_[i], request_.up, spills.height[i]);
+      full[i] = volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
     }
     std::vector<bool> has_hole(spheres_.size(), false);
     for (const EscapeHole& hole : plan_.holes) has_hole[hole.from] = true;

@@ -39,8 +39,21 @@ double tube_volume_below(const Tube& tube, Vec3d up, double height) {
   return area * whole / kSlices;
 }
 
-double volume_of(const Sphere& ball) {
-  return 4.0 / 3.0 * std::numbers::pi * ball.radius * ball.radius * ball.radius;
+// Of a ball, up to a height above its lowest point.
+double cap_volume(double radius, double depth) {
+  depth = std::clamp(depth, 0.0, 2 * radius);
+  return std::numbers::pi * depth * depth * (3 * radius - depth) / 3;
+}
+
+// Of a void with a roof, up to a height above its centre: of the ball up to the shoulder, then of the cone.
+double upright_volume_below(const Roof& roof, double radius, double height) {
+  const double shoulder = roof.shoulder(radius);
+  const double of_ball = cap_volume(radius, radius + std::min(height, shoulder));
+  const double rise = std::min(height, roof.top(radius)) - shoulder;
+  if (rise <= 0) return of_ball;
+  const double wide = radius * roof.cosine;
+  const double narrow = wide - rise * roof.sine / roof.cosine;
+  return of_ball + std::numbers::pi / 3 * rise * (wide * wide + wide * narrow + narrow * narrow);
 }
 
 // What stays in one orientation, by ball and by channel, mm3.
@@ -59,7 +72,7 @@ Pools find_pools(std::span<const Sphere> spheres, const DrainagePlan& plan, cons
                  Vec3d up) {
   Pools pools;
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    pools.of_ball.push_back(volume_below(spheres[i], up, spills.height[i]));
+    pools.of_ball.push_back(volume_below(plan.roof, spheres[i], up, spills.height[i]));
   for (const Channel& channel : plan.channels) {
     const double through_start = std::max(
         opening_floor(channel.tube, TubeEnd::start, spheres[channel.from], up), spills.height[channel.from]);
@@ -108,9 +121,11 @@ double sill_of_hole(const EscapeHole& hole, const Sphere& ball, Vec3d up) {
   return std::max(opening_floor(hole.tube, TubeEnd::start, ball, up), outside);
 }
 
-double volume_below(const Sphere& ball, Vec3d up, double height) {
-  const double depth = std::clamp(height - (dot(ball.centre, up) - ball.radius), 0.0, 2 * ball.radius);
-  return std::numbers::pi * depth * depth * (3 * ball.radius - depth) / 3;
+double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double height) {
+  const double above_centre = height - dot(planned.centre, up);
+  if (!roof.shapes(planned.radius)) return cap_volume(planned.radius, planned.radius + above_centre);
+  if (dot(up, roof.up) > 0) return upright_volume_below(roof, planned.radius, above_centre);
+  return void_volume(roof, planned.radius) - upright_volume_below(roof, planned.radius, -above_centre);
 }
 
 SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up) {
@@ -144,15 +159,15 @@ SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& 
 }
 
 TrappedPools trapped_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
-  const SpillHeights upright = spill_heights(spheres, plan, plan.up);
-  const SpillHeights turned = spill_heights(spheres, plan, -plan.up);
-  const Pools left = find_pools(spheres, plan, upright, plan.up);
-  const Pools room = find_pools(spheres, plan, turned, -plan.up);
+  const SpillHeights upright = spill_heights(spheres, plan, plan.roof.up);
+  const SpillHeights turned = spill_heights(spheres, plan, -plan.roof.up);
+  const Pools left = find_pools(spheres, plan, upright, plan.roof.up);
+  const Pools room = find_pools(spheres, plan, turned, -plan.roof.up);
   TrappedPools pools;
   pools.upright = left.sum();
   pools.upside_down = room.sum();
   pools.after_both = std::min(pools.upright, retained(left, room, plan, turned));
-  for (const Sphere& ball : spheres) pools.total += volume_of(ball);
+  for (const Sphere& ball : spheres) pools.total += void_volume(plan.roof, ball.radius);
   for (const Channel& channel : plan.channels) {
     pools.total += std::numbers::pi * channel.tube.radius * channel.tube.radius *
                    length(channel.tube.end - channel.tube.start);

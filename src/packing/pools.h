@@ -25,8 +25,8 @@ SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& 
 // Height that liquid has to reach to leave through an escape hole.
 double sill_of_hole(const EscapeHole& hole, const Sphere& ball, Vec3d up);
 
-// Volume of a ball below a height along `up`, mm3.
-double volume_below(const Sphere& ball, Vec3d up, double height);
+// Volume of a void below a height along `up`, which is `roof.up` or the opposite; mm3.
+double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double height);
 
 // What stays in full voids in print orientation, and of that after they have been turned upside down. The
 // latter is an upper bound: what a pool loses runs down its way out and fills what it meets there; what stays

@@ -11,14 +11,17 @@
 namespace aerate {
 namespace {
 
-// Rings of two tubes on one ball must not come so near to each other that an edge of one would cut the other:
-// a share of the radius, more than half the edge of an octagon.
-constexpr double kLeastSpacingShare = 0.4;
+// How far a void reaches beyond its ball at most.
+double reach_of_roofs(std::span<const Sphere> spheres, const Roof& roof) {
+  double reach = 0;
+  for (const Sphere& sphere : spheres) reach = std::max(reach, roof.spine(sphere.radius));
+  return reach;
+}
 
 }  // namespace
 
 double tube_spacing(double radius, double other_radius) {
-  return radius + other_radius + kLeastSpacingShare * std::max(radius, other_radius);
+  return radius + other_radius + kOpeningSpacingShare * std::max(radius, other_radius);
 }
 
 TubeClearance::TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
@@ -28,8 +31,9 @@ TubeClearance::TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, 
       spheres_(spheres),
       limits_(limits),
       longest_(longest),
-      cell_size_(longest + 2 * widest_radius + std::max(limits.gap, kLeastSpacingShare * widest_radius)) {
-  const double reach = longest + widest_radius + limits.gap;
+      roofs_(reach_of_roofs(spheres, limits.roof)),
+      cell_size_(longest + 2 * widest_radius + std::max(limits.gap, kOpeningSpacingShare * widest_radius)) {
+  const double reach = longest + widest_radius + limits.gap + roofs_;
   const std::vector<SpherePair> pairs = find_pairs_within(spheres, reach);
   offsets_.assign(spheres.size() + 1, 0);
   for (const SpherePair& pair : pairs) {
@@ -115,11 +119,16 @@ bool TubeClearance::keeps_away(const Tube& tube, double most, double slope) cons
 }
 
 bool TubeClearance::keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const {
-  const double reach = length(tube.end - tube.start) + tube.radius + limits_.gap;
+  const double reach = length(tube.end - tube.start) + tube.radius + limits_.gap + roofs_;
   for (std::size_t i = offsets_[from]; i < offsets_[from + 1] && gaps_[i] <= reach; ++i) {
     if (neighbours_[i] == to) continue;
     const Sphere& other = spheres_[neighbours_[i]];
-    if (distance_to_point({tube.start, tube.end}, other.centre) < tube.radius + limits_.gap + other.radius)
+    const Segment axis{tube.start, tube.end};
+    const double needed = tube.radius + limits_.gap;
+    const double from_ball = distance_to_point(axis, other.centre) - other.radius;
+    if (from_ball < needed) return false;
+    const double spine = limits_.roof.spine(other.radius);
+    if (spine > 0 && from_ball < needed + spine && distance_to_void(axis, limits_.roof, other) < needed)
       return false;
   }
   return true;

@@ -42,7 +42,7 @@ class TubeClearance {
   // but for `kWallSlack` as before, and for the last of the way that is shorter than that.
   bool keeps_wall_on_way_out(const Tube& tube, double slope) const;
 
-  // Do balls other than those two keep the gap from the tube, which starts at ball `from`?
+  // Do voids other than those two keep the gap from the tube, which starts at ball `from`?
   bool keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
 
   // Tubes that have been placed keep the gap from each other. On a ball that two of them meet, their openings
@@ -70,6 +70,7 @@ class TubeClearance {
   std::span<const Sphere> spheres_;
   PackingLimits limits_;
   double longest_;
+  double roofs_;  // how far a void reaches beyond its ball at most
   std::vector<std::size_t> offsets_;
   std::vector<std::uint32_t> neighbours_;
   std::vector<double> gaps_;  // to each of these neighbours

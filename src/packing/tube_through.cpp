@@ -10,6 +10,11 @@ namespace {
 // Points of an opening's rim that are looked at; one of them is on the tube's lower side.
 constexpr std::size_t kRimPoints = 24;
 
+// Tubes below roofs have this much to spare, mm. Steeper ones (by the sine of the angle from the vertical)
+// have no side that they could be moved to.
+constexpr double kBesideRoof = 0.01;
+constexpr double kLeastLevel = 0.05;
+
 // Least and greatest distance along the axis, from the tube's start, at which its lines cross the sphere.
 struct Extent {
   double least, greatest;
@@ -47,6 +52,20 @@ std::optional<Tube> tube_out_of(const Sphere& ball, Vec3d inside, Vec3d directio
   if (!meets_all_round(line, ball)) return std::nullopt;
   const Vec3d start = inside + direction * rim_extent(line, TubeEnd::start, ball).least;
   return Tube{start, start + direction * length, radius};
+}
+
+std::optional<WayBelowRoof> way_below_roof(const Sphere& ball, const Roof& roof, Vec3d direction,
+                                           double radius) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double rise = dot(direction, roof.up);
+  const double level = std::sqrt(std::max(0.0, 1 - rise * rise));
+  const bool is_upright = level < kLeastLevel;
+  if (is_upright && rise > 0 && roof.shapes(ball.radius)) return std::nullopt;
+  if (is_upright || !roof.shapes(ball.radius)) return WayBelowRoof{{0, 0, 0}, kInfinity};
+  // The point of the roof's circle in the plane of direction and `up`, as seen along the direction.
+  const double circle = ball.radius * (roof.sine * level - roof.cosine * rise);
+  return WayBelowRoof{(roof.up - direction * rise) * (1 / level),
+                      circle - (1 + kOpeningSpacingShare) * radius - kBesideRoof};
 }
 
 double opening_floor(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up) {

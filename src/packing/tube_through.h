@@ -16,6 +16,16 @@ std::optional<Tube> tube_between(const Sphere& from, const Sphere& to, Vec3d ins
 std::optional<Tube> tube_out_of(const Sphere& ball, Vec3d inside, Vec3d direction, double length,
                                 double radius);
 
+// A tube that leaves a ball with a roof has to do so below it. `across` is the direction that rises most of
+// those at right angles to the tube's, and `highest` the farthest along it, from the centre, that its axis
+// may pass; infinite where nothing limits it. nullopt for a tube straight up, which has no such side.
+struct WayBelowRoof {
+  Vec3d across;
+  double highest;
+};
+std::optional<WayBelowRoof> way_below_roof(const Sphere& ball, const Roof& roof, Vec3d direction,
+                                           double radius);
+
 // Height along `up` above which liquid in the ball leaves it through the tube: the lowest point of their
 // common opening.
 double opening_floor(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up);

@@ -8,13 +8,16 @@
 #include <optional>
 #include <vector>
 
+#include "core/facets_near.h"
 #include "core/segment_distance.h"
 #include "kernels/winding.h"
 #include "mesh/topology.h"
 #include "packing/verify.h"
+#include "pipeline/ceilings.h"
 #include "pipeline/check_drained_parts.h"
 #include "pipeline/check_failure.h"
 #include "pipeline/mesh_part.h"
+#include "pipeline/planned_shape.h"
 #include "pipeline/same_triangles.h"
 
 namespace aerate {
@@ -172,7 +175,7 @@ std::size_t count_sealed(const Mesh& read_back, const EdgeUses& uses, const Expe
 void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
   for (std::size_t i = 0; i < plan.holes.size(); ++i) {
     const Tube& tube = plan.holes[i].tube;
-    const Mesh part = part_near(read_back, cut_of(tube), tube.radius + kNeighbourhood);
+    const Mesh part = part_of(read_back, facets_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
     const SelfIntersections found = find_self_intersections(part);
     if (found.pair_count == 0) continue;
     const Vec3d place = found.places.front();
@@ -203,8 +206,7 @@ double channel_wall(const Mesh& model, const DrainagePlan& plan) {
 // Balls and channels outside them, and holes to where their cut ends.
 double most_removed(const ExpectedDrained& expected) {
   double volume = 0;
-  for (const Sphere& ball : expected.balls)
-    volume += 4.0 / 3.0 * std::numbers::pi * ball.radius * ball.radius * ball.radius;
+  for (const Sphere& ball : expected.balls) volume += void_volume(expected.plan.roof, ball.radius);
   const auto add = [&](const Tube& tube, double beyond) {
     volume +=
         std::numbers::pi * tube.radius * tube.radius * (length(tube.end - tube.start) + beyond * tube.radius);
@@ -217,8 +219,8 @@ double most_removed(const ExpectedDrained& expected) {
 double least_removed(const ExpectedDrained& expected) {
   double volume = 0;
   for (const Sphere& ball : expected.balls) {
-    const double radius = std::max(0.0, ball.radius - expected.tolerance);
-    volume += 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    const PlannedShape shape(expected.plan.roof, ball);
+    volume += shape.volume_within(expected.tolerance);
   }
   return volume;
 }
@@ -242,12 +244,24 @@ void measure_volumes(const Mesh& read_back, const ExpectedDrained& expected, Out
 }
 
 Clearances measure_limits(const std::vector<Sphere>& balls, const ExpectedDrained& expected) {
-  const Clearances clearances = measure_clearances(expected.model, balls);
+  const Clearances clearances = measure_clearances(expected.model, balls, expected.plan.roof);
   if (clearances.wall < expected.limits.wall - kLimitError)
     fail_check("the wall is {:.9g} mm, the limit {:.9g} mm", clearances.wall, expected.limits.wall);
   if (clearances.gap && *clearances.gap < expected.limits.gap - kLimitError)
     fail_check("the gap is {:.9g} mm, the limit {:.9g} mm", *clearances.gap, expected.limits.gap);
   return clearances;
+}
+
+// Of all inner surface: voids, channels and holes.
+std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const ExpectedDrained& expected,
+                                                 Monitor& monitor) {
+  const Roof& roof = expected.plan.roof;
+  if (!roof.limits_ceilings()) return std::nullopt;
+  const std::size_t first = expected.solid.outer_triangle_count;
+  const std::vector<ShellRange> inner{{first, read_back.triangles.size() - first, 0, 0}};
+  const Ceilings ceilings = measure_ceilings(read_back, inner, roof, monitor);
+  require_bridged(ceilings, roof, expected.tolerance);
+  return ceilings;
 }
 
 }  // namespace
@@ -266,8 +280,8 @@ std::vector<Triangle> outward_shells(const Mesh& model, const Inspection& inspec
   return outward;
 }
 
-bool is_crossed_near(const Mesh& model, const Tube& tube) {
-  const Mesh part = part_near(model, cut_of(tube), tube.radius + kNeighbourhood);
+bool is_crossed_near(const FacetsNear& model, const Tube& tube) {
+  const Mesh part = part_of(model.mesh(), model.find(cut_of(tube), tube.radius + kNeighbourhood));
   return find_self_intersections(part).pair_count > 0;
 }
 
@@ -316,6 +330,10 @@ OutputFacts check_drained(const Mesh& read_back, const ExpectedDrained& expected
     facts.largest_radius = std::max(facts.largest_radius, ball.radius);
   }
   facts.void_deviation = parts.depth;
+  facts.roof_count = static_cast<std::size_t>(
+      std::count_if(expected.balls.begin(), expected.balls.end(),
+                    [&](const Sphere& ball) { return expected.plan.roof.shapes(ball.radius); }));
+  facts.ceilings = measure_limited_ceilings(read_back, expected, monitor);
   facts.clearances = measure_limits(parts.balls, expected);
   measure_volumes(read_back, expected, facts);
   return facts;

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "core/drainage.h"
+#include "core/facets_near.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "core/packing.h"
@@ -29,7 +30,7 @@ std::vector<Triangle> outward_shells(const Mesh& model, const Inspection& inspec
 
 // Whether the model runs through itself near a tube's outer end. A hole there could not be told from such a
 // flaw.
-bool is_crossed_near(const Mesh& model, const Tube& tube);
+bool is_crossed_near(const FacetsNear& model, const Tube& tube);
 
 // Checks and measures a mesh that was read back from disk, its vertices welded:
 //   - every triangle is the one that was written, coordinate for coordinate; the first ones are the model's,
@@ -42,6 +43,8 @@ bool is_crossed_near(const Mesh& model, const Tube& tube);
 //   - no inner surface is a shell of its own, and every hole opens to the outside of all shells: no cavity is
 //     sealed that the model did not have;
 //   - near escape holes no triangles intersect;
+//   - where ceilings are limited, none of voids, channels and holes is wider than the bridge by more than the
+//     tolerance;
 //   - what was removed is at most what was planned, and at least the voids less the tolerance.
 // Fills in what `drainage` says is measured. Throws FailureError that says which of these does not hold;
 // InterruptedError.

@@ -10,6 +10,7 @@
 
 #include "core/segment_distance.h"
 #include "pipeline/check_failure.h"
+#include "pipeline/planned_shape.h"
 #include "pipeline/polled_loop.h"
 
 namespace aerate {
@@ -41,27 +42,26 @@ double rounding_of(const Mesh& mesh, const Triangle& t) {
 }
 
 struct VoidFinding {
-  double reach = 0;  // of its vertices from the centre
+  double radius = 0;  // of the least void that holds it
   double depth = 0;
   bool faces_centre = true;
 };
 
-VoidFinding look_at_void(const Mesh& mesh, std::span<const Triangle> triangles, const Sphere& ball) {
+VoidFinding look_at_void(const Mesh& mesh, std::span<const Triangle> triangles, const Roof& roof,
+                         const Sphere& planned) {
   VoidFinding found;
-  double nearest = std::numeric_limits<double>::infinity();
+  PlannedShape shape(roof, planned);
   for (const Triangle& t : triangles) {
-    const Vec3d a = to_double(mesh.positions[t[0]]) - ball.centre;
-    const Vec3d b = to_double(mesh.positions[t[1]]) - ball.centre;
-    const Vec3d c = to_double(mesh.positions[t[2]]) - ball.centre;
-    found.reach = std::max({found.reach, length(a), length(b), length(c)});
-    const Vec3d normal = cross(b - a, c - a);
-    const double size = length(normal);
-    // The surface faces the centre, so its plane has a negative distance.
-    const double distance = size > 0 ? -dot(normal, a) / size : 0;
-    if (!(distance > 0)) found.faces_centre = false;
-    nearest = std::min(nearest, distance);
+    const kernels::Facet facet{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+    const Vec3d a = to_double(facet.a) - planned.centre;
+    const Vec3d b = to_double(facet.b) - planned.centre;
+    const Vec3d c = to_double(facet.c) - planned.centre;
+    for (const Vec3f& p : {facet.a, facet.b, facet.c}) shape.hold(p);
+    // Seen from the centre a triangle that faces it runs clockwise.
+    if (!(dot(a, cross(b, c)) < 0)) found.faces_centre = false;
+    found.depth = std::max(found.depth, shape.depth(facet));
   }
-  found.depth = ball.radius - nearest;
+  found.radius = shape.radius();
   return found;
 }
 
@@ -118,19 +118,20 @@ DrainedParts check_drained_parts(const Mesh& mesh, const DrainedSolid& solid, st
 
   std::vector<VoidFinding> voids(balls.size());
   for_each_polled(balls.size(), kPartsPerPiece, monitor, [&](std::size_t i) {
-    voids[i] = look_at_void(mesh, part_of(mesh, solid.void_ends, i, solid.outer_triangle_count), balls[i]);
+    voids[i] = look_at_void(mesh, part_of(mesh, solid.void_ends, i, solid.outer_triangle_count), plan.roof,
+                            balls[i]);
   });
   DrainedParts parts;
   for (std::size_t i = 0; i < balls.size(); ++i) {
     const double slack = balls[i].radius * kDistanceError;
     if (!voids[i].faces_centre) fail_check("void {}: a triangle does not face its centre", i);
-    if (voids[i].reach > balls[i].radius + slack)
-      fail_check("void {}: it reaches {:.9g} mm from its centre, planned were {:.9g} mm", i, voids[i].reach,
+    if (voids[i].radius > balls[i].radius + slack)
+      fail_check("void {}: it has radius {:.9g} mm, planned were {:.9g} mm", i, voids[i].radius,
                  balls[i].radius);
     if (voids[i].depth > tolerance + slack)
-      fail_check("void {}: it stays {:.9g} mm inside its ball, the tolerance is {:.9g} mm", i, voids[i].depth,
-                 tolerance);
-    parts.balls.push_back({balls[i].centre, voids[i].reach, balls[i].kind});
+      fail_check("void {}: it stays {:.9g} mm inside its planned shape, the tolerance is {:.9g} mm", i,
+                 voids[i].depth, tolerance);
+    parts.balls.push_back({balls[i].centre, voids[i].radius, balls[i].kind});
     parts.depth = std::max(parts.depth, voids[i].depth);
   }
   const std::size_t first_channel = balls.empty() ? solid.outer_triangle_count : solid.void_ends.back();
@@ -138,11 +139,17 @@ DrainedParts check_drained_parts(const Mesh& mesh, const DrainedSolid& solid, st
     const auto flaw =
         flaw_of_tube(mesh, part_of(mesh, solid.channel_ends, i, first_channel), plan.channels[i].tube);
     if (flaw) fail_check("channel {}: {}", i, *flaw);
+    const Channel& channel = plan.channels[i];
+    if (!opens_below_roof(channel.tube, TubeEnd::start, balls[channel.from], plan.roof) ||
+        !opens_below_roof(channel.tube, TubeEnd::end, balls[channel.to], plan.roof))
+      fail_check("channel {}: it opens into a roof", i);
   }
   const std::size_t first_hole = plan.channels.empty() ? first_channel : solid.channel_ends.back();
   for (std::size_t i = 0; i < plan.holes.size(); ++i) {
     const auto flaw = flaw_of_tube(mesh, part_of(mesh, solid.hole_ends, i, first_hole), plan.holes[i].tube);
     if (flaw) fail_check("escape hole {}: {}", i, *flaw);
+    if (!opens_below_roof(plan.holes[i].tube, TubeEnd::start, balls[plan.holes[i].from], plan.roof))
+      fail_check("escape hole {}: it opens into a roof", i);
   }
   return parts;
 }
@@ -155,8 +162,7 @@ void check_tube_gaps(std::span<const Sphere> balls, const DrainagePlan& plan, do
     const Tube& tube = *tubes[i].tube;
     for (std::uint32_t ball = 0; ball < balls.size(); ++ball) {
       if (ball == tubes[i].from || ball == tubes[i].to) continue;
-      const double distance =
-          distance_to_point({tube.start, tube.end}, balls[ball].centre) - tube.radius - balls[ball].radius;
+      const double distance = distance_to_void({tube.start, tube.end}, plan.roof, balls[ball]) - tube.radius;
       if (distance < gap - kLimitError)
         fail_check("a channel or hole is {:.9g} mm from void {}, the gap is {:.9g} mm", distance, ball, gap);
     }

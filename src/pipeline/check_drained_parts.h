@@ -13,13 +13,14 @@ namespace aerate {
 
 // What was found of the voids of a drained model.
 struct DrainedParts {
-  std::vector<Sphere> balls;  // round the planned centres, holding every vertex of the void's own surface
-  double depth = 0;           // how far that stays inside the planned balls at most, mm
+  std::vector<Sphere> balls;  // round the planned centres: the least void that holds all its own surface
+  double depth = 0;           // how far that stays inside the planned shapes at most, mm
 };
 
 // Checks the inner surface of a mesh that was read back, part by part as `solid` has them:
-//   - each void's part lies within [-tolerance, 0] of its planned ball and faces its centre,
-//   - each channel's and hole's part lies within its planned tube and faces its axis.
+//   - each void's part lies within [-tolerance, 0] of its planned shape and faces its centre,
+//   - each channel's and hole's part lies within its planned tube and faces its axis,
+//   - these open into voids with roofs below them.
 // Throws FailureError for the first that does not; InterruptedError.
 DrainedParts check_drained_parts(const Mesh& mesh, const DrainedSolid& solid, std::span<const Sphere> balls,
                                  const DrainagePlan& plan, double tolerance, Monitor& monitor);

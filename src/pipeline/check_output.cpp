@@ -109,9 +109,7 @@ std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const Ex
   const Roof& roof = expected.limits.roof;
   if (!roof.limits_ceilings()) return std::nullopt;
   const Ceilings ceilings = measure_ceilings(read_back, expected.solid.void_shells, roof, monitor);
-  if (ceilings.widest > roof.bridge() + expected.tolerance)
-    fail_check("a ceiling is {:.4g} mm wide, the bridge {:.4g} mm and the tolerance {:.4g} mm",
-               ceilings.widest, roof.bridge(), expected.tolerance);
+  require_bridged(ceilings, roof, expected.tolerance);
   return ceilings;
 }
 

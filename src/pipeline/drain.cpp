@@ -52,12 +52,13 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
 DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const DrainageRequest& request,
                             double tolerance, Monitor& monitor) {
   const std::vector<Triangle> outward = outward_shells(model.mesh, model.inspection);
+  const FacetsNear facets(model.mesh);
   const auto way_of = [&](const EscapeHole& hole) { return WayOut{hole.tube, packing.spheres[hole.from]}; };
   const auto can_open = [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
     std::vector<WayOut> before;
     for (const EscapeHole& other : others) before.push_back(way_of(other));
-    return can_cut(model.mesh, way_of(hole), before, request.up, tolerance) &&
-           !is_crossed_near(model.mesh, hole.tube);
+    return can_cut(facets, way_of(hole), before, packing.limits.roof, tolerance) &&
+           !is_crossed_near(facets, hole.tube);
   };
   PlannedDrainage planned = plan_drainage({model.mesh, outward}, packing, request, can_open, monitor);
   const std::size_t packed = packing.spheres.size();
@@ -69,23 +70,23 @@ DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const 
   return drainage;
 }
 
-void warn_of_ceilings(const Process& process, const Packing& packing, const DrainageRequest& request,
-                      Monitor& monitor) {
-  const auto& overhang = process[Limit::overhang];
-  const auto& bridge = process[Limit::bridge];
-  if (!overhang || !bridge) return;
-  // The part of a sphere's ceiling that leans further than the overhang is a cap of this share of its
-  // diameter.
-  const double share = std::cos(overhang->value * std::numbers::pi / 180);
-  double widest = request.channel_radius;
-  for (const Sphere& ball : packing.spheres) widest = std::max(widest, ball.radius);
-  if (2 * widest * share <= bridge->value) return;
-  monitor.notice(fmt::format(
-      "drained voids are spheres and round channels without roofs: ceilings of voids are up to {:.1f} mm "
-      "wide "
-      "where they lean further than {:g} degrees, those of channels {:.1f} mm, and {} bridges {:g} mm; check "
-      "that they print without support",
-      2 * widest * share, overhang->value, 2 * request.channel_radius * share, process.name, bridge->value));
+void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,
+                        Monitor& monitor) {
+  if (!roof.limits_ceilings()) return;
+  const auto tell = [&](double radius, const char* what, const char* option) {
+    const double width = 2 * radius * roof.cosine;
+    if (width <= roof.bridge() * (1 + 1e-9)) return;
+    // Where sqrt(1 - (sine / lean)^2) of the diameter is the bridge.
+    const double share = roof.bridge() / (2 * radius);
+    const double steepest = std::asin(std::min(1.0, roof.sine / std::sqrt(1 - share * share)));
+    monitor.notice(fmt::format(
+        "{} of {:g} mm lean out of the vertical by {:.0f} degrees at most: level ones would have ceilings of "
+        "{:.1f} mm, and {} bridges {:g} mm; up to {} {:.1f} they can lead anywhere",
+        what, 2 * radius, steepest * 180 / std::numbers::pi, width, choice.process.name, roof.bridge(),
+        option, std::floor(10 * roof.bridge() / roof.cosine) / 10));
+  };
+  tell(request.channel_radius, "channels", "--channel-diameter");
+  tell(request.hole_radius, "escape holes", "--hole-diameter");
 }
 
 DrainedSolid carve_within(const PreparedModel& model, const Packing& packing, const DrainagePlan& plan,

@@ -17,10 +17,10 @@ namespace aerate {
 DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const DrainageRequest& request,
                             double tolerance, Monitor& monitor);
 
-// What the user should know about ceilings, if the process limits them: drained voids are spheres and round
-// channels, without roofs.
-void warn_of_ceilings(const Process& process, const Packing& packing, const DrainageRequest& request,
-                      Monitor& monitor);
+// What the user should know about channels and escape holes that are wider than the printer bridges, if it
+// limits ceilings.
+void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,
+                        Monitor& monitor);
 
 // Carves what was planned. Where openings take more triangles than were estimated, the tolerance is loosened
 // until they are at most `max_triangles`; it is set to what was used. Throws as carve_drained, and UsageError

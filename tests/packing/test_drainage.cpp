@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/roof.h"
 #include "core/segment_distance.h"
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
@@ -68,11 +69,46 @@ TEST(Tubes, BetweenBallsHoldAllThatIsOutsideThem) {
 TEST(Pools, VolumeBelowAHeight) {
   const Sphere sphere = ball({7, 8, 9}, 3);
   const double whole = 36 * std::numbers::pi;
-  EXPECT_EQ(volume_below(sphere, kUp, 6), 0);
-  EXPECT_NEAR(volume_below(sphere, kUp, 9), whole / 2, 1e-9);
-  EXPECT_NEAR(volume_below(sphere, kUp, 12), whole, 1e-9);
-  EXPECT_NEAR(volume_below(sphere, kUp, 7), std::numbers::pi * (9 - 1) / 3, 1e-9);  // cap of height 1
-  EXPECT_NEAR(volume_below(sphere, -kUp, -10), volume_below(sphere, kUp, 8), 1e-9);
+  EXPECT_EQ(volume_below({}, sphere, kUp, 6), 0);
+  EXPECT_NEAR(volume_below({}, sphere, kUp, 9), whole / 2, 1e-9);
+  EXPECT_NEAR(volume_below({}, sphere, kUp, 12), whole, 1e-9);
+  EXPECT_NEAR(volume_below({}, sphere, kUp, 7), std::numbers::pi * (9 - 1) / 3, 1e-9);  // cap of height 1
+  EXPECT_NEAR(volume_below({}, sphere, -kUp, -10), volume_below({}, sphere, kUp, 8), 1e-9);
+}
+
+TEST(Pools, VolumeOfAVoidWithARoofBelowAHeight) {
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  const Sphere sphere = ball({7, 8, 9}, 3);
+  const double whole = void_volume(roof, 3), top = 9 + roof.top(3);
+  EXPECT_EQ(volume_below(roof, sphere, kUp, 6), 0);
+  EXPECT_NEAR(volume_below(roof, sphere, kUp, 9), 18 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, kUp, top), whole, 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, kUp, 50), whole, 1e-9);
+  // The frustum below the flat top, a millimetre in radius.
+  EXPECT_NEAR(whole - volume_below(roof, sphere, kUp, top - 0.5), std::numbers::pi / 3 * (3.375 - 1), 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, -kUp, -top), 0, 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, -kUp, -10), whole - volume_below(roof, sphere, kUp, 10), 1e-9);
+}
+
+TEST(Tubes, OpenBelowRoofsAndLeanNoFurtherThanIsBridged) {
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  const Sphere sphere = ball({0, 0, 0}, 5);
+  const auto at = [](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return Tube{{0, 0, 0}, Vec3d{std::cos(angle), 0, std::sin(angle)} * 9, 1};
+  };
+  // Half as wide as asin(1/5) is 11.5 degrees, and 0.4 mm are 4.6.
+  EXPECT_TRUE(opens_below_roof(at(28), TubeEnd::start, sphere, roof));
+  EXPECT_FALSE(opens_below_roof(at(30), TubeEnd::start, sphere, roof));
+  EXPECT_FALSE(opens_below_roof(at(90), TubeEnd::start, sphere, roof));
+  EXPECT_TRUE(opens_below_roof(at(30), TubeEnd::end, sphere, roof));  // at the far side, below the centre
+  EXPECT_TRUE(opens_below_roof(at(90), TubeEnd::start, sphere, {}));
+  EXPECT_EQ(ceiling_width(at(45.1), roof), 0);
+  EXPECT_NEAR(ceiling_width(at(0), roof), std::sqrt(2.0), 1e-9);
+  EXPECT_TRUE(is_bridged(at(0), roof));
+  EXPECT_FALSE(is_bridged({{0, 0, 0}, {1, 0, 0}, 1.5}, roof));
+  EXPECT_TRUE(is_bridged({{0, 0, 0}, {1, 0, 1}, 1.5}, roof));
+  EXPECT_TRUE(is_bridged({{0, 0, 0}, {1, 0, 0}, 1.5}, {}));
 }
 
 // A ball with a hole to the side and a lower ball behind it: what lies below the hole stays in the first, and
@@ -91,10 +127,10 @@ TEST(Pools, OfTwoBallsAndALevelHole) {
   const TrappedPools pools = trapped_pools(spheres, plan);
   const double tube = std::numbers::pi * length(plan.channels[0].tube.end - plan.channels[0].tube.start);
   const double whole = 4.0 / 3.0 * std::numbers::pi * 64;
-  EXPECT_NEAR(pools.upright, volume_below(spheres[0], kUp, 9) + whole + tube, 0.05);
+  EXPECT_NEAR(pools.upright, volume_below({}, spheres[0], kUp, 9) + whole + tube, 0.05);
   // Upside down the lower ball is above the hole and its channel opens at its lowest point; in the other
   // stays what is below the hole's other side.
-  EXPECT_NEAR(pools.upside_down, volume_below(spheres[0], -kUp, -11), 1e-6);
+  EXPECT_NEAR(pools.upside_down, volume_below({}, spheres[0], -kUp, -11), 1e-6);
   EXPECT_LE(pools.after_both, pools.upside_down + 1e-9);
   EXPECT_NEAR(pools.total, 2 * whole + tube, 1e-9);
 }
@@ -138,10 +174,11 @@ TEST(TubeClearances, ATubeThatComesOutTooObliquelyIsRefused) {
 
 class PlanDrainage : public testing::Test {
  protected:
-  void pack(const Mesh& mesh) {
+  void pack(const Mesh& mesh, const Roof& roof = {}) {
     mesh_ = mesh;
     Monitor silent;
-    packing_ = pack_adaptive(mesh_, {.wall = 2, .gap = 1, .min_radius = 2.5, .max_radius = 8}, {}, silent);
+    packing_ = pack_adaptive(mesh_, {.wall = 2, .gap = 1, .min_radius = 2.5, .max_radius = 8, .roof = roof},
+                             {}, silent);
   }
   PlannedDrainage plan(const std::vector<Triangle>& outward) const {
     Monitor silent;
@@ -163,18 +200,23 @@ class PlanDrainage : public testing::Test {
     std::vector<std::uint32_t> reached;
     for (const EscapeHole& hole : planned.plan.holes) {
       EXPECT_TRUE(meets_all_round(hole.tube, spheres[hole.from]));
+      EXPECT_TRUE(opens_below_roof(hole.tube, TubeEnd::start, spheres[hole.from], packing_.limits.roof));
+      EXPECT_TRUE(is_bridged(hole.tube, packing_.limits.roof));
       EXPECT_NEAR(test::distance_to_surface(mesh_, hole.tube.end), 0, 1e-3);
       reached.push_back(hole.from);
     }
     for (const Channel& c : planned.plan.channels) {
       EXPECT_TRUE(meets_all_round(c.tube, spheres[c.from]));
       EXPECT_TRUE(meets_all_round(c.tube, spheres[c.to]));
+      EXPECT_TRUE(opens_below_roof(c.tube, TubeEnd::start, spheres[c.from], packing_.limits.roof));
+      EXPECT_TRUE(opens_below_roof(c.tube, TubeEnd::end, spheres[c.to], packing_.limits.roof));
+      EXPECT_TRUE(is_bridged(c.tube, packing_.limits.roof));
       const Segment axis{c.tube.start, c.tube.end};
       for (const Triangle& t : mesh_.triangles)
         EXPECT_GE(distance_to_facet(axis, test::facet_of(mesh_, t)), c.tube.radius + 2 - 1e-9);
       for (std::uint32_t i = 0; i < spheres.size(); ++i) {
         if (i != c.from && i != c.to) {
-          EXPECT_GE(distance_to_point(axis, spheres[i].centre) - spheres[i].radius, c.tube.radius + 1 - 1e-9);
+          EXPECT_GE(distance_to_void(axis, packing_.limits.roof, spheres[i]), c.tube.radius + 1 - 1e-7);
         }
       }
     }
@@ -198,7 +240,7 @@ class PlanDrainage : public testing::Test {
 
   Mesh mesh_;
   Packing packing_;
-  DrainageRequest request_{.channel_radius = 1.75, .hole_radius = 1.75, .up = kUp, .escape_holes = {}};
+  DrainageRequest request_{.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}};
 };
 
 TEST_F(PlanDrainage, JoinsTheVoidsOfABlockAndOpensItLowAndHigh) {
@@ -217,7 +259,7 @@ TEST_F(PlanDrainage, JoinsTheVoidsOfABlockAndOpensItLowAndHigh) {
 
 TEST_F(PlanDrainage, FollowsThePrintOrientation) {
   pack(test::make_box({0, 0, 0}, {50, 40, 40}));
-  request_.up = {-1, 0, 0};
+  packing_.limits.roof.up = {-1, 0, 0};
   const PlannedDrainage planned = plan();
   expect_sound(planned);
   double low = 0, high = 50;
@@ -227,6 +269,16 @@ TEST_F(PlanDrainage, FollowsThePrintOrientation) {
   }
   EXPECT_GT(low, 40);
   EXPECT_LT(high, 20);
+}
+
+TEST_F(PlanDrainage, KeepsClearOfRoofs) {
+  request_.channel_radius = 1.4;
+  for (const Vec3d up : {kUp, Vec3d{0, 0.6, -0.8}}) {
+    pack(test::make_box({0, 0, 0}, {50, 40, 40}), make_roof({.degrees = 45, .bridge = 2, .up = up}));
+    const PlannedDrainage planned = plan();
+    expect_sound(planned);
+    EXPECT_GE(planned.kept.size(), packing_.spheres.size() * 7 / 10);
+  }
 }
 
 TEST_F(PlanDrainage, OpensWhereItIsAsked) {

@@ -11,9 +11,13 @@
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
 #include "pipeline/check_drained.h"
+#include "pipeline/drain.h"
+#include "pipeline/solid_file.h"
 #include "printing/carve_drained.h"
 #include "tests/support/caught.h"
+#include "tests/support/files.h"
 #include "tests/support/shapes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace aerate {
 namespace {
@@ -37,13 +41,14 @@ class CheckDrained : public testing::Test {
     Monitor silent;
     Packing packing = pack_adaptive(model_, limits_, {}, silent);
     const std::vector<Triangle> outward = outward_shells(model_, inspect(model_));
+    const FacetsNear facets(model_);
     const PlannedDrainage planned = plan_drainage(
         {model_, outward}, packing, {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}},
         [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
           std::vector<WayOut> before;
           for (const EscapeHole& other : others) before.push_back({other.tube, packing.spheres[other.from]});
-          return can_cut(model_, {hole.tube, packing.spheres[hole.from]}, before, {0, 0, 1}, tolerance_) &&
-                 !is_crossed_near(model_, hole.tube);
+          return can_cut(facets, {hole.tube, packing.spheres[hole.from]}, before, limits_.roof, tolerance_) &&
+                 !is_crossed_near(facets, hole.tube);
         },
         silent);
     for (const std::uint32_t i : planned.kept) balls_.push_back(packing.spheres[i]);
@@ -162,7 +167,38 @@ TEST_F(CheckDrained, MoreIsRemovedThanPlanned) {
   tolerance_ = 0.2;
   EXPECT_NO_THROW(check());  // coarser by that, but within what is expected
   tolerance_ = 0.001;
-  expect_found("inside its ball");
+  expect_found("inside its planned shape");
+}
+
+// A plan that its result does not follow: the job fails, and what was there before is left alone.
+TEST_F(CheckDrained, WhatFailsIsNeverWritten) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const std::string& name) {
+    Monitor silent;
+    AnnouncedFile pending(folder.path() / name, silent);
+    const auto check_read = [&](const Mesh& written) {
+      check_drained(written,
+                    {.solid = solid_,
+                     .model = model_,
+                     .inspection = inspect(model_),
+                     .balls = balls_,
+                     .plan = plan_,
+                     .limits = limits_,
+                     .tolerance = tolerance_},
+                    drainage_, silent);
+    };
+    write_checked(as_solid(solid_), pending, {}, check_read, silent);
+  };
+  write("sound.stl");
+  const auto sound = test::read_bytes(folder.path() / "sound.stl");
+  EXPECT_EQ(sound.size(), 84 + 50 * solid_.mesh.triangles.size());
+
+  // A channel that leads elsewhere than planned.
+  plan_.channels.front().tube.end = plan_.channels.front().tube.end + Vec3d{0, 0, 1};
+  EXPECT_THROW(write("broken.stl"), FailureError);
+  EXPECT_THROW(write("sound.stl"), FailureError);
+  EXPECT_EQ(test::entries_of(folder.path()), std::vector<std::string>{"sound.stl"});
+  EXPECT_EQ(test::read_bytes(folder.path() / "sound.stl"), sound);
 }
 
 // A model with a cavity of its own beside the voids.

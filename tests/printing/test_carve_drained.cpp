@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <vector>
 
+#include "core/roof.h"
 #include "printing/carve_drained.h"
 #include "printing/cut_surface.h"
 #include "tests/support/shapes.h"
@@ -126,6 +127,39 @@ TEST_F(CarveDrained, EveryPartStaysInsideItsShapeByTheToleranceAtMost) {
   }
 }
 
+// Both voids with roofs: they end in a flat top as wide as the bridge, and tubes open below.
+TEST_F(CarveDrained, VoidsWithRoofs) {
+  plan_.roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  plan_.holes[1].tube = out_of({28, 15, 12}, {1, 0, 0}, 2);
+  for (const Channel& c : plan_.channels) {
+    ASSERT_TRUE(opens_below_roof(c.tube, TubeEnd::start, spheres_[0], plan_.roof));
+    ASSERT_TRUE(opens_below_roof(c.tube, TubeEnd::end, spheres_[1], plan_.roof));
+  }
+  for (const double tolerance : {0.2, 0.05, 0.02}) {
+    const DrainedSolid solid = carve(tolerance);
+    ASSERT_TRUE(test::is_closed_manifold(solid.mesh));
+    EXPECT_EQ(test::euler_characteristic(solid.mesh), 2 + 2 * 2 - 3 * 2);
+    std::size_t first = solid.outer_triangle_count;
+    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+      double top = 0;
+      for (; first < solid.void_ends[i]; ++first) {
+        for (const std::uint32_t v : solid.mesh.triangles[first]) {
+          const Vec3d p = to_double(solid.mesh.positions[v]);
+          EXPECT_LE(least_radius_holding(plan_.roof, spheres_[i].centre, p), spheres_[i].radius);
+          top = std::max(top, p.z - spheres_[i].centre.z);
+        }
+      }
+      EXPECT_NEAR(top, plan_.roof.top(spheres_[i].radius), tolerance);
+    }
+  }
+  const double removed = signed_volume(model_) - signed_volume(carve(0.02).mesh);
+  plan_.roof = {};
+  const double without = signed_volume(model_) - signed_volume(carve(0.02).mesh);
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  EXPECT_NEAR(removed - without,
+              void_volume(roof, 7) + void_volume(roof, 6) - void_volume({}, 7) - void_volume({}, 6), 4);
+}
+
 TEST_F(CarveDrained, ASideThatATubeMeetsAtAGrazingAngle) {
   // As far off the centre as may be.
   const double off = 0.999 * kWidestTubeShare * 7 - 2;
@@ -147,25 +181,25 @@ TEST_F(CarveDrained, TheSameBytesForAnyNumberOfThreads) {
 
 TEST_F(CarveDrained, AHoleIsNotCutWhereTheSurfaceIsNoSinglePiece) {
   const WayOut way{plan_.holes[0].tube, spheres_[0]};
-  EXPECT_TRUE(can_cut(model_, way, {}, kUp, kTolerance));
+  EXPECT_TRUE(can_cut(FacetsNear(model_), way, {}, Roof{}, kTolerance));
   // Another surface a little below the first.
   const Mesh doubled = test::join(model_, test::make_box({0, 0, -3}, {40, 30, -2}));
-  EXPECT_FALSE(can_cut(doubled, way, {}, kUp, kTolerance));
+  EXPECT_FALSE(can_cut(FacetsNear(doubled), way, {}, Roof{}, kTolerance));
   // It stops short of the surface.
   const Mesh larger = test::make_box({0, 0, -20}, {40, 30, 30});
-  EXPECT_FALSE(can_cut(larger, way, {}, kUp, kTolerance));
+  EXPECT_FALSE(can_cut(FacetsNear(larger), way, {}, Roof{}, kTolerance));
 }
 
 // Both holes come out of one triangle: the second meets what the first has left of it.
 TEST_F(CarveDrained, TwoHolesThroughOneTriangle) {
   plan_.holes[1].tube = {{27, 15, 8.9}, {27, 15, 0}, 2};
   const std::vector<WayOut> first{{plan_.holes[0].tube, spheres_[0]}};
-  ASSERT_TRUE(can_cut(model_, {plan_.holes[1].tube, spheres_[1]}, first, kUp, kTolerance));
+  ASSERT_TRUE(can_cut(FacetsNear(model_), {plan_.holes[1].tube, spheres_[1]}, first, Roof{}, kTolerance));
   const DrainedSolid solid = carve();
   EXPECT_TRUE(test::is_closed_manifold(solid.mesh));
   EXPECT_LE(solid.cut_triangles.size(), 2U);
   // A hole where there is one already.
-  EXPECT_FALSE(can_cut(model_, first[0], first, kUp, kTolerance));
+  EXPECT_FALSE(can_cut(FacetsNear(model_), first[0], first, Roof{}, kTolerance));
 }
 
 }  // namespace

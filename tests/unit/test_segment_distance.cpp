@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/facets_near.h"
+#include "core/roof.h"
 #include "core/segment_distance.h"
 #include "kernels/point_triangle.h"
+#include "tests/support/shapes.h"
 
 namespace aerate {
 namespace {
@@ -54,6 +57,40 @@ TEST(SegmentDistance, AgreesWithSamplesEverywhere) {
     const double to_facet = distance_to_facet(a, facet);
     EXPECT_LE(to_facet, sampled(a, facet) + 1e-12);
     EXPECT_GE(to_facet, sampled(a, facet) - step);
+  }
+}
+
+TEST(SegmentDistance, ToVoidsWithRoofs) {
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = {0, 0, 1}});
+  const Sphere planned{{1, 2, 3}, 5, SphereKind::adaptive};
+  // Against a dense row of balls on the spine.
+  const auto by_balls = [&](const Segment& segment) {
+    double nearest = 1e9;
+    const double spine = roof.spine(5);
+    for (int i = 0; i <= 20000; ++i) {
+      const double t = spine * i / 20000;
+      nearest =
+          std::min(nearest, distance_to_point(segment, planned.centre + roof.up * t) - 5 + t * roof.sine);
+    }
+    return nearest;
+  };
+  for (const Segment& segment :
+       {Segment{{9, 2, 3}, {9, 5, 3}}, Segment{{4, 2, 12}, {9, 2, 8}}, Segment{{1, 2, 11}, {1, 2, 14}},
+        Segment{{-9, 4, 9}, {9, 4, 9}}, Segment{{1, 8, -6}, {1, 9, 20}}}) {
+    EXPECT_NEAR(distance_to_void(segment, roof, planned), by_balls(segment), 1e-6);
+    EXPECT_NEAR(distance_to_void(segment, {}, planned), distance_to_point(segment, planned.centre) - 5,
+                1e-12);
+  }
+}
+
+TEST(FacetsNear, AreTheSameByHierarchyAndByLookingAtAll) {
+  const Mesh sphere = test::make_uv_sphere(10, 40, 60);
+  const FacetsNear index(sphere);
+  for (const double reach : {0.3, 1.0, 4.0}) {
+    const Segment segment{{0, 0, 0}, {9, 6, 4}};
+    const std::vector<std::uint32_t> found = index.find(segment, reach);
+    EXPECT_FALSE(found.empty());
+    EXPECT_EQ(found, facets_near(sphere, segment, reach));
   }
 }
 
