@@ -4,6 +4,8 @@
 #include <exception>
 #include <filesystem>
 #include <fmt/format.h>
+#include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -15,32 +17,37 @@
 #include "pipeline/hollow.h"
 #include "pipeline/process_choice.h"
 
-// What each process leaves of a model, whole jobs, checked: and in the same run the same limits without
-// roofs.
-//   bench_processes [MODELS]
+// What each process leaves of a model: whole jobs, drained where the process asks for that, and in the same
+// run the same job with sealed voids; then what roofs cost against the same limits without them.
+//   bench_processes [--markdown] [MODELS]
+// --markdown: the table of processes alone, as docs/processes.md has it.
 
 namespace aerate::bench {
 namespace {
 
-struct Row {
-  std::string name;
-  ProcessChoice choice;
-};
+// Each job is run so often, the kinds in turn; the shortest time counts.
+constexpr int kRuns = 3;
 
-std::vector<Row> rows() {
-  const std::vector<GivenLimit> wide{{Limit::min_radius, 1.5, "here"}, {Limit::max_radius, 10, "here"}};
-  std::vector<GivenLimit> wide_without = wide;
-  wide_without.push_back({Limit::bridge, 100, "here"});
-  const auto of = [](const char* process, const std::vector<GivenLimit>& given) {
-    return limits_under(choose_process(process), given, ProcessCheck::strict);
-  };
-  return {{"fdm", of("fdm", {})},
-          {"fdm, radius 1.5 to 10", of("fdm", wide)},
-          {"the same without roofs", of("fdm", wide_without)},
-          {"sla", of("sla", {})},
-          {"sls", of("sls", {})},
-          {"metal", of("metal", {})},
-          {"the same without roofs", of("metal", {{Limit::bridge, 100, "here"}})}};
+ProcessChoice choice_of(const char* process, const std::vector<GivenLimit>& given = {}) {
+  return limits_under(choose_process(process), given, ProcessCheck::strict);
+}
+
+HollowOptions options_for(const std::filesystem::path& model, const std::filesystem::path& folder,
+                          const ProcessChoice& choice) {
+  HollowOptions options;
+  options.model = model;
+  options.output = folder / "hollow.stl";
+  options.packing.process = choice;
+  options.packing.limits = packing_limits(choice);
+  return options;
+}
+
+// As the command asks for it, if the process does.
+std::optional<DrainageRequest> drainage_of(const Process& process) {
+  if (process.drainage != Drainage::needed) return std::nullopt;
+  return DrainageRequest{.channel_radius = process[Limit::channel]->value / 2,
+                         .hole_radius = process[Limit::escape_hole]->value / 2,
+                         .escape_holes = {}};
 }
 
 // Volume of the model deeper than the wall, mm3: no void can take more. By points of a raster of 0.5 mm.
@@ -65,47 +72,100 @@ double deeper_than(const Mesh& mesh, double wall) {
   return static_cast<double>(deep) * kStep * kStep * kStep;
 }
 
-void print_rows(const std::filesystem::path& model, const std::filesystem::path& folder) {
+std::string percent_of_bound(const HollowReport& report, double bound) {
+  return fmt::format("{:.1f}", 100 * report.output.volume_removed / bound);
+}
+
+std::string widest_ceiling(const OutputFacts& output) {
+  return output.ceilings ? fmt::format("{:.2f}", output.ceilings->widest) : "not limited";
+}
+
+// The job as asked for, and sealed, with the shortest times of both.
+struct Jobs {
+  HollowReport asked, sealed;
+  double asked_seconds = std::numeric_limits<double>::infinity();
+  double sealed_seconds = std::numeric_limits<double>::infinity();
+};
+
+Jobs run_jobs(HollowOptions options) {
+  Jobs jobs;
+  const std::optional<DrainageRequest> drainage = drainage_of(options.packing.process.process);
+  for (int i = 0; i < kRuns; ++i) {
+    Monitor monitor;
+    options.drainage.reset();
+    jobs.sealed = hollow(options, monitor);
+    jobs.sealed_seconds = std::min(jobs.sealed_seconds, total_of(jobs.sealed.stages).seconds);
+    options.drainage = drainage;
+    if (!drainage) continue;
+    jobs.asked = hollow(options, monitor);
+    jobs.asked_seconds = std::min(jobs.asked_seconds, total_of(jobs.asked.stages).seconds);
+  }
+  if (!drainage) jobs.asked = jobs.sealed, jobs.asked_seconds = jobs.sealed_seconds;
+  return jobs;
+}
+
+void print_processes(const std::filesystem::path& model, const std::filesystem::path& folder) {
   const Mesh mesh = load_model(model).mesh;
   fmt::print("{}\n\n", model.filename().string());
   fmt::print(
-      "| process | voids | with roofs | void volume, mm3 | % of the model | % of what is deeper than the "
-      "wall "
-      "| widest ceiling, mm | pack s | all s |\n|---|---|---|---|---|---|---|---|---|\n");
-  double roofed = 0;
-  std::string ratios;
-  for (const Row& row : rows()) {
-    HollowOptions options;
-    options.model = model;
-    options.output = folder / "hollow.stl";
-    options.packing.process = row.choice;
-    options.packing.limits = packing_limits(row.choice);
-    Monitor monitor;
-    const HollowReport report = hollow(options, monitor);
-    const OutputFacts& output = report.output;
-    const auto pack = std::find_if(report.stages.begin(), report.stages.end(),
-                                   [](const StageCost& stage) { return stage.name == "pack"; });
-    fmt::print("| {} | {} | {} | {:.0f} | {:.2f} | {:.1f} | {} | {:.2f} | {:.2f} |\n", row.name,
-               output.void_count, output.roof_count, output.volume_removed,
-               100 * output.volume_removed / output.volume_before,
-               100 * output.volume_removed / deeper_than(mesh, options.packing.limits.wall),
-               output.ceilings ? fmt::format("{:.2f}", output.ceilings->widest) : "not limited",
-               pack->seconds, total_of(report.stages).seconds);
-    if (row.name == "the same without roofs")
-      ratios += fmt::format("{}{:.3f} ({})", ratios.empty() ? "" : ", ", roofed / output.volume_removed,
-                            report.process.process.name);
-    roofed = output.volume_removed;
+      "| process | voids | not made | void volume, mm3 | % of what is deeper than the wall | the same "
+      "sealed, "
+      "% | widest ceiling, mm | drained | escape holes | trapped, % | job, s | sealed, s | ratio |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const char* process : {"fdm", "sla", "sls", "metal"}) {
+    const HollowOptions options = options_for(model, folder, choice_of(process));
+    const Jobs jobs = run_jobs(options);
+    const double bound = deeper_than(mesh, options.packing.limits.wall);
+    const OutputFacts& output = jobs.asked.output;
+    const auto& drainage = jobs.asked.drainage;
+    fmt::print("| {} | {} | {} | {:.0f} | {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} |\n",
+               process, output.void_count, drainage ? fmt::format("{}", drainage->dropped.count()) : "-",
+               output.volume_removed, percent_of_bound(jobs.asked, bound),
+               percent_of_bound(jobs.sealed, bound), widest_ceiling(output), drainage ? "yes" : "sealed",
+               drainage ? fmt::format("{}", drainage->plan.holes.size()) : "-",
+               drainage
+                   ? fmt::format("{:.2f}", 100 * drainage->plan.pools.after_both / drainage->plan.pools.total)
+                   : "-",
+               jobs.asked_seconds, jobs.sealed_seconds, jobs.asked_seconds / jobs.sealed_seconds);
   }
-  fmt::print("\nvoid volume with roofs / without: {}\n\n", ratios);
+  fmt::print("\n");
 }
 
-int run(const std::vector<std::filesystem::path>& models) {
+// The same limits with and without a rule for ceilings, sealed.
+void print_roofs(const std::filesystem::path& model, const std::filesystem::path& folder) {
+  const std::vector<GivenLimit> wide{{Limit::min_radius, 1.5, "here"}, {Limit::max_radius, 10, "here"}};
+  std::vector<GivenLimit> wide_without = wide;
+  const GivenLimit no_rule{Limit::bridge, 100, "here"};
+  wide_without.push_back(no_rule);
+  struct Pair {
+    const char* name;
+    ProcessChoice with, without;
+  };
+  const std::vector<Pair> pairs{
+      {"fdm, radius 1.5 to 10", choice_of("fdm", wide), choice_of("fdm", wide_without)},
+      {"metal", choice_of("metal"), choice_of("metal", {no_rule})}};
+  fmt::print(
+      "| limits | voids | with roofs | void volume, mm3 | without roofs, mm3 | ratio | widest ceiling, mm |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const Pair& pair : pairs) {
+    Monitor monitor;
+    const OutputFacts with = hollow(options_for(model, folder, pair.with), monitor).output;
+    const OutputFacts without = hollow(options_for(model, folder, pair.without), monitor).output;
+    fmt::print("| {} | {} | {} | {:.0f} | {:.0f} | {:.3f} | {} |\n", pair.name, with.void_count,
+               with.roof_count, with.volume_removed, without.volume_removed,
+               with.volume_removed / without.volume_removed, widest_ceiling(with));
+  }
+  fmt::print("\n");
+}
+
+int run(const std::vector<std::filesystem::path>& models, bool markdown) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / fmt::format("aerate-bench-{}", std::random_device{}());
   std::filesystem::create_directory(folder);
   for (const std::filesystem::path& model : models) {
     if (std::filesystem::exists(model)) {
-      print_rows(model, folder);
+      print_processes(model, folder);
+      if (!markdown) print_roofs(model, folder);
     } else {
       fmt::print("skipped: {} is not there\n", model.string());
     }
@@ -119,8 +179,10 @@ int run(const std::vector<std::filesystem::path>& models) {
 
 int main(int argc, char** argv) {
   try {
-    const std::filesystem::path folder = argc > 1 ? argv[1] : "../shared/models";
-    return aerate::bench::run({folder / "dragon-47k-100mm.stl", folder / "bunny-100mm.stl"});
+    const bool markdown = argc > 1 && std::string(argv[1]) == "--markdown";
+    const int models = markdown ? 2 : 1;
+    const std::filesystem::path folder = argc > models ? argv[models] : "../shared/models";
+    return aerate::bench::run({folder / "dragon-47k-100mm.stl", folder / "bunny-100mm.stl"}, markdown);
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_processes: {}\n", error.what());
     return EXIT_FAILURE;

@@ -87,17 +87,18 @@ Process sls() {
 }
 
 Process metal() {
-  return make("metal", "powder bed, metal (DMLS, SLM)", "AlSi10Mg", Drainage::needed,
-              {{Limit::wall, {1.0, own("twice the unsupported wall of Hubs, 0.5 mm")}},
-               {Limit::gap, {1.0, own("twice the unsupported wall of Hubs, 0.5 mm")}},
-               {Limit::min_radius, {3.0, own("wider than the channel that empties it")}},
-               {Limit::max_radius, {8, own("guides give no figure")}},
-               {Limit::least_wall, {0.4, "Hubs: supported wall"}},
-               {Limit::least_gap, {0.4, "Hubs: supported wall"}},
-               {Limit::overhang, {45, "Protolabs: self-supporting angles; Hubs"}},
-               {Limit::bridge, {2, "Hubs"}},
-               {Limit::channel, {5.0, "Hubs: escape holes of 5 mm"}},
-               {Limit::escape_hole, {5.0, "Hubs: 5 mm"}}});
+  return make(
+      "metal", "powder bed, metal (DMLS, SLM)", "AlSi10Mg", Drainage::needed,
+      {{Limit::wall, {1.0, own("twice the unsupported wall of Hubs, 0.5 mm")}},
+       {Limit::gap, {1.0, own("twice the unsupported wall of Hubs, 0.5 mm")}},
+       {Limit::min_radius, {3.0, own("wider than the channel that empties it")}},
+       {Limit::max_radius, {8, own("guides give no figure")}},
+       {Limit::least_wall, {0.4, "Hubs: supported wall"}},
+       {Limit::least_gap, {0.4, "Hubs: supported wall"}},
+       {Limit::overhang, {45, "Protolabs: self-supporting angles; Hubs"}},
+       {Limit::bridge, {2, "Hubs"}},
+       {Limit::channel, {2.8, own("level ones have ceilings beyond 45 degrees as wide as the bridge")}},
+       {Limit::escape_hole, {5.0, "Hubs: 5 mm"}}});
 }
 
 }  // namespace

@@ -17,41 +17,13 @@
 namespace aerate {
 namespace {
 
-// A top this much narrower than the tolerance is made a point.
-constexpr double kApexShare = 0.25;
-
-// A cone must be this many steps of fp32 wide, or the ring and the top would run together.
-constexpr double kMarginsPerCone = 64;
-
-double farthest_point(const Roof& roof, double radius) {
-  return std::max(radius, std::hypot(roof.top(radius), roof.flat_radius()));
-}
-
-// Of a void with a roof, which reaches farther than its ball.
-double margin_of(const Roof& roof, const Sphere& sphere) {
-  return rounding_margin({sphere.centre, farthest_point(roof, sphere.radius), sphere.kind});
-}
-
-VoidTemplate::Top top_of(const Roof& roof, const Sphere& sphere, double tolerance) {
-  if (roof.flat_radius() <= kApexShare * tolerance) return VoidTemplate::Top::apex;
-  const double cone_width = sphere.radius * roof.cosine - roof.flat_radius();
-  return cone_width < kMarginsPerCone * margin_of(roof, sphere) ? VoidTemplate::Top::shoulder
-                                                                : VoidTemplate::Top::flat;
-}
-
-// Vertices are moved towards the centre by this share of their distance, so that every plane that touches the
-// void is left behind by the rounding margin at least.
-double shrinkage(const Roof& roof, const Sphere& sphere) {
-  return margin_of(roof, sphere) / std::min(sphere.radius, roof.top(sphere.radius));
-}
-
 // Greatest sagitta of a cut ball for the void, which then lies within the tolerance.
-double allowed_sagitta(const Roof& roof, const Sphere& sphere, VoidTemplate::Top top, double tolerance) {
-  double rest =
-      tolerance - margin_of(roof, sphere) - shrinkage(roof, sphere) * farthest_point(roof, sphere.radius);
+double allowed_sagitta(const Roof& roof, const Sphere& sphere, RoofTop top, double tolerance) {
+  double rest = tolerance - void_rounding_margin(roof, sphere) -
+                void_shrinkage(roof, sphere) * farthest_point(roof, sphere.radius);
   const double cone_width = sphere.radius * roof.cosine - roof.flat_radius();
-  if (top == VoidTemplate::Top::apex) rest -= roof.flat_radius() * roof.cosine;
-  if (top == VoidTemplate::Top::shoulder) rest -= 2 * cone_width / roof.sine;
+  if (top == RoofTop::apex) rest -= roof.flat_radius() * roof.cosine;
+  if (top == RoofTop::shoulder) rest -= 2 * cone_width / roof.sine;
   return rest / sphere.radius;
 }
 
@@ -94,29 +66,17 @@ void place_ball(const BallTemplate& ball, const Sphere& sphere, Placement place)
   for (const Triangle& t : ball.triangles) place.triangle(t[0], t[1], t[2]);
 }
 
-// A convex polygon of the vertices first, first + 1, ...: a zigzag, which has better angles than a fan.
-void close_polygon(std::size_t first, std::size_t count, Placement& place) {
-  std::size_t low = 0, high = count - 1;
-  while (low + 1 < high) {
-    place.triangle(first + low, first + low + 1, first + high);
-    ++low;
-    if (low + 1 >= high) break;
-    place.triangle(first + low, first + high - 1, first + high);
-    --high;
-  }
-}
-
 void place_cut_ball(const VoidTemplate& chosen, const Sphere& sphere, const Roof& roof, Placement place) {
   const CutBall& cut = *chosen.cut;
   const std::size_t ring = cut.ring_count, rim = cut.directions.size();
   const UprightFrame frame(roof.up);
-  const double shrunk = 1 - shrinkage(roof, sphere);
+  const double shrunk = 1 - void_shrinkage(roof, sphere);
   const auto put = [&](double x, double y, double z) {
     place.vertex(sphere.centre + (frame.x * x + frame.y * y + frame.z * z) * shrunk);
   };
   const double top = roof.top(sphere.radius);
   const double to_rim = roof.flat_radius() / roof.cosine;  // from the ring's unit directions
-  const bool is_shoulder = chosen.top == VoidTemplate::Top::shoulder;
+  const bool is_shoulder = chosen.top == RoofTop::shoulder;
   for (std::size_t i = 0; i < cut.directions.size(); ++i) {
     const Vec3d d = cut.directions[i];
     if (is_shoulder && i < ring) {
@@ -126,37 +86,25 @@ void place_cut_ball(const VoidTemplate& chosen, const Sphere& sphere, const Roof
     }
   }
   for (const Triangle& t : cut.triangles) place.triangle(t[0], t[1], t[2]);
-  switch (chosen.top) {
-    case VoidTemplate::Top::shoulder:
-      close_polygon(0, ring, place);
-      return;
-    case VoidTemplate::Top::apex:
-      put(0, 0, top);
-      for (std::size_t i = 0; i < ring; ++i) place.triangle(i, (i + 1) % ring, rim);
-      return;
-    case VoidTemplate::Top::flat:
-      for (std::size_t i = 0; i < ring; ++i) {
-        const std::size_t next = (i + 1) % ring;
-        put(cut.directions[i].x * to_rim, cut.directions[i].y * to_rim, top);
-        place.triangle(i, next, rim + next);
-        place.triangle(i, rim + next, rim + i);
-      }
-      close_polygon(rim, ring, place);
-      return;
-  }
+  if (chosen.top == RoofTop::apex) put(0, 0, top);
+  for (std::size_t i = 0; i < ring && chosen.top == RoofTop::flat; ++i)
+    put(cut.directions[i].x * to_rim, cut.directions[i].y * to_rim, top);
+  for (const Triangle& t : roof_triangles(chosen.top, 0, ring, rim)) place.triangle(t[0], t[1], t[2]);
 }
 
 }  // namespace
 
 std::size_t VoidTemplate::vertex_count() const {
   if (ball != nullptr) return ball->directions.size();
-  return cut->directions.size() + (top == Top::flat ? cut->ring_count : top == Top::apex ? 1 : 0);
+  return cut->directions.size() + (top == RoofTop::flat ? cut->ring_count : top == RoofTop::apex ? 1 : 0);
 }
 
 std::size_t VoidTemplate::triangle_count() const {
   if (ball != nullptr) return ball->triangles.size();
   const std::size_t ring = cut->ring_count;
-  return cut->triangles.size() + (top == Top::flat ? 3 * ring - 2 : top == Top::apex ? ring : ring - 2);
+  return cut->triangles.size() + (top == RoofTop::flat   ? 3 * ring - 2
+                                  : top == RoofTop::apex ? ring
+                                                         : ring - 2);
 }
 
 struct VoidTemplates::Cut {
@@ -181,9 +129,9 @@ std::vector<VoidTemplate> VoidTemplates::choose(std::span<const Sphere> spheres,
 }
 
 VoidTemplate VoidTemplates::choose_with_roof(const Sphere& sphere, double tolerance) {
-  const VoidTemplate::Top top = top_of(roof_, sphere, tolerance);
+  const RoofTop top = roof_top_of(roof_, sphere, tolerance);
   const double allowed = allowed_sagitta(roof_, sphere, top, tolerance);
-  const double shrunk = 1 - shrinkage(roof_, sphere);
+  const double shrunk = 1 - void_shrinkage(roof_, sphere);
   for (std::size_t level = ladder_.level_for(sphere, tolerance); level < BallLadder::kLevelCount; ++level) {
     const CutBall* made = cut(level);
     if (made == nullptr || made->sagitta > allowed) continue;

@@ -10,6 +10,7 @@
 #include "core/void_plan.h"
 #include "printing/ball_template.h"
 #include "printing/cut_ball.h"
+#include "printing/roof_top.h"
 
 namespace aerate {
 
@@ -18,13 +19,7 @@ struct VoidTemplate {
   const BallTemplate* ball = nullptr;
   const CutBall* cut = nullptr;  // instead of `ball`
 
-  // How what the cut leaves open is closed.
-  enum class Top {
-    flat,      // a cone, and a flat top
-    shoulder,  // a flat top where the ball is cut: the cone would be thinner than rounding
-    apex,      // a cone whose top is a point, within the tolerance
-  };
-  Top top = Top::flat;
+  RoofTop top = RoofTop::flat;  // how what the cut leaves open is closed
 
   std::size_t vertex_count() const;
   std::size_t triangle_count() const;

@@ -1,8 +1,10 @@
 #include "cli/form_options.h"
 
+#include <fmt/format.h>
 #include <map>
 
 #include "cli/void_options.h"
+#include "core/error.h"
 
 namespace aerate::cli {
 
@@ -25,6 +27,11 @@ HollowOptions FormOptions::hollow(const ModelOptions& model) const {
   options.model = model.path;
   options.load = model.load();
   options.packing = packing_.request();
+  const Process& process = options.packing.process.process;
+  if (process.drainage == Drainage::needed)
+    throw UsageError(
+        fmt::format("process {} prints no filament, and these slicers do nothing else", process.name),
+        "make a model with voids that drain by 'aerate hollow', and open it in the slicer of your printer");
   options.tolerance = tolerance_;
   require_tolerance_for(options.packing.limits, tolerance_);
   return options;

@@ -5,11 +5,13 @@
 #include <optional>
 #include <string>
 
+#include "cli/drainage_options.h"
 #include "cli/model_options.h"
 #include "cli/numbers.h"
 #include "cli/print_options.h"
 #include "cli/run_reported.h"
 #include "cli/void_options.h"
+#include "core/error.h"
 #include "pipeline/hollow.h"
 #include "pipeline/material_choice.h"
 
@@ -20,6 +22,7 @@ struct HollowCommand::Options {
       : command(*app.add_subcommand("hollow", "Remove packed spheres from a model and write the result")),
         model(command),
         packing(command, config),
+        drainage(command, config),
         print(command),
         run(command) {
     command.add_option("-o,--output", output, "The result: .stl, .3mf, .obj or .ply (required)")
@@ -98,6 +101,10 @@ struct HollowCommand::Options {
             .at(surface);
     if (void_form == "modifiers")
       options.modifiers = {flavor == "orca" ? ThreeMfFlavor::orca : ThreeMfFlavor::prusa, modifier_infill};
+    // Modifiers leave the model solid: nothing is trapped in them.
+    if (options.modifiers && drainage.is_asked_for())
+      throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
+    if (!options.modifiers) options.drainage = drainage.request(options.packing.process);
     options.tolerance = tolerance;
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
@@ -113,6 +120,7 @@ struct HollowCommand::Options {
   CLI::App& command;
   ModelOptions model;
   PackingCommandOptions packing;
+  DrainageOptions drainage;
   PrintOptions print;
   RunOptions run;
   std::string output;

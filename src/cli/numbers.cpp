@@ -13,6 +13,16 @@ std::optional<double> parse_number(std::string_view text) {
   return is_number ? std::optional(number) : std::nullopt;
 }
 
+std::optional<Vec3d> parse_point(std::string_view text) {
+  const std::size_t first = text.find(','), second = text.find(',', first + 1);
+  if (first == std::string_view::npos || second == std::string_view::npos) return std::nullopt;
+  const auto x = parse_number(text.substr(0, first));
+  const auto y = parse_number(text.substr(first + 1, second - first - 1));
+  const auto z = parse_number(text.substr(second + 1));
+  if (!x || !y || !z) return std::nullopt;
+  return Vec3d{*x, *y, *z};
+}
+
 std::optional<Vec3d> parse_direction(std::string_view text) {
   if (text.size() == 2 && (text[0] == '+' || text[0] == '-')) {
     const double length = text[0] == '+' ? 1 : -1;
@@ -27,15 +37,10 @@ std::optional<Vec3d> parse_direction(std::string_view text) {
         return std::nullopt;
     }
   }
-  const std::size_t first = text.find(','), second = text.find(',', first + 1);
-  if (first == std::string_view::npos || second == std::string_view::npos) return std::nullopt;
-  const auto x = parse_number(text.substr(0, first));
-  const auto y = parse_number(text.substr(first + 1, second - first - 1));
-  const auto z = parse_number(text.substr(second + 1));
-  if (!x || !y || !z) return std::nullopt;
-  const double extent = length(Vec3d{*x, *y, *z});
+  const auto direction = parse_point(text);
+  const double extent = direction ? length(*direction) : 0;
   if (!(extent > 0) || !std::isfinite(extent)) return std::nullopt;
-  return Vec3d{*x, *y, *z} * (1 / extent);
+  return *direction * (1 / extent);
 }
 
 CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit) {

@@ -12,6 +12,9 @@ namespace aerate::cli {
 // The finite number that is the whole text, if it is one.
 std::optional<double> parse_number(std::string_view text);
 
+// "x,y,z"
+std::optional<Vec3d> parse_point(std::string_view text);
+
 // "+x", "-x", .., "-z" or "x,y,z" as a unit vector; nothing for other texts and for 0,0,0.
 std::optional<Vec3d> parse_direction(std::string_view text);
 

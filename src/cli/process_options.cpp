@@ -73,7 +73,9 @@ void ProcessOptions::add_roof_options(CLI::App& command) {
                : fmt::format("'{}' is no direction: give +x, -x, +y, -y, +z, -z or three numbers x,y,z",
                              text);
   };
-  up_option_ = command.add_option("--up", up_, "Which way is up in print: +x, -x, +y, -y, +z, -z or x,y,z")
+  up_option_ = command
+                   .add_option("--up", up_,
+                               "Which way is up in print: +x, -x, +y, -y, +z, -z or x,y,z (write --up=-z)")
                    ->check(CLI::Validator(is_direction, ""))
                    ->type_name("DIRECTION")
                    ->capture_default_str();

@@ -152,6 +152,40 @@ Json json_of(const PrintPrediction& print) {
           {"time_direction", name_of(print.time)}};
 }
 
+Json json_of(const TrappedPools& pools) {
+  return {{"print_orientation_mm3", pools.upright},
+          {"upside_down_mm3", pools.upside_down},
+          {"after_both_mm3", pools.after_both},
+          {"after_both_percent", pools.total > 0 ? 100 * pools.after_both / pools.total : 0}};
+}
+
+Json json_of(const DrainageFacts& drainage) {
+  Json holes = Json::array();
+  for (const EscapeHole& hole : drainage.plan.holes) {
+    const Vec3d along = hole.tube.end - hole.tube.start;
+    holes.push_back({{"place_mm", json_of(hole.tube.end)},
+                     {"outwards", json_of(along * (1 / length(along)))},
+                     {"network", hole.network}});
+  }
+  return {{"channel_diameter_mm", 2 * drainage.request.channel_radius},
+          {"hole_diameter_mm", 2 * drainage.request.hole_radius},
+          {"networks", drainage.plan.network_count},
+          {"channels", drainage.plan.channels.size()},
+          {"holes", holes},
+          {"channel_wall_mm", drainage.plan.channels.empty() ? Json(nullptr) : Json(drainage.channel_wall)},
+          {"cut_triangles", drainage.cut_triangles},
+          {"sealed_cavities", drainage.sealed_cavities},
+          {"cavities_of_model", drainage.cavities_of_model},
+          {"pools", json_of(drainage.plan.pools)},
+          {"dropped_voids",
+           {{"count", drainage.dropped.count()},
+            {"volume_mm3", drainage.dropped.volume},
+            {"narrow", drainage.dropped.narrow},
+            {"unreached", drainage.dropped.unreached},
+            {"unopened", drainage.dropped.unopened},
+            {"full", drainage.dropped.full}}}};
+}
+
 Json json_of(const Balance& balance, const OutputFacts& output) {
   return {{"solid_fraction", output.volume_after / output.volume_before},
           {"relative_stiffness_upper_bound", balance.stiffness},
@@ -217,6 +251,7 @@ std::string to_json(const HollowReport& report) {
   } else {
     json["ceilings"] = nullptr;
   }
+  json["drainage"] = report.drainage ? json_of(*report.drainage) : Json(nullptr);
   json["volume"] = volume_of(report);
   json["modifiers"] = modifiers_of(report);
   json["centre_of_mass"] = {

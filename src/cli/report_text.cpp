@@ -129,6 +129,25 @@ void add_balance(Lines& lines, const HollowReport& report) {
   }
 }
 
+void add_drainage(Lines& lines, const HollowReport& report) {
+  if (!report.drainage) return;
+  const DrainageFacts& drainage = *report.drainage;
+  const DrainagePlan& plan = drainage.plan;
+  lines.add("drainage", "{} of {:g} mm, {} of {:g} mm; {} sealed",
+            count_of(plan.channels.size(), "channel", "channels"), 2 * drainage.request.channel_radius,
+            count_of(plan.holes.size(), "escape hole", "escape holes"), 2 * drainage.request.hole_radius,
+            count_of(drainage.sealed_cavities, "cavity", "cavities"));
+  std::string places;
+  for (const EscapeHole& hole : plan.holes) places += (places.empty() ? "" : ", ") + point(hole.tube.end);
+  lines.add("", "holes at {} mm", places);
+  const TrappedPools& pools = plan.pools;
+  lines.add("", "{:.1f} mm3 stay as printed, {:.1f} upside down, {:.1f} ({:.2f} % of the voids) after both",
+            pools.upright, pools.upside_down, pools.after_both, 100 * pools.after_both / pools.total);
+  if (drainage.dropped.count() > 0)
+    lines.add("", "{} that cannot be drained not made ({:.1f} mm3)",
+              count_of(drainage.dropped.count(), "void", "voids"), drainage.dropped.volume);
+}
+
 const char* in_words(TimeChange change) {
   switch (change) {
     case TimeChange::shorter:
@@ -220,6 +239,7 @@ std::string to_text(const HollowReport& report) {
   lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", output.clearances.wall,
             report.limits.wall, gap_in_words(output.clearances), report.limits.gap);
   add_ceilings(lines, report);
+  add_drainage(lines, report);
   if (!report.modifiers) add_balance(lines, report);
   add_material(lines, report);
   lines.add("output", "{}: {} ({} outside, {}), {}", output.path.filename().string(),

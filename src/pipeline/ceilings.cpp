@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/upright.h"
+#include "pipeline/check_failure.h"
 #include "pipeline/polled_loop.h"
 
 namespace aerate {
@@ -209,6 +210,12 @@ Ceilings measure_ceilings(const Mesh& mesh, std::span<const ShellRange> shells, 
     widest = std::max(widest, 2 * largest_disc(*ceiling, widest / 2));
   }
   return {ceilings.size(), widest};
+}
+
+void require_bridged(const Ceilings& ceilings, const Roof& roof, double tolerance) {
+  if (ceilings.widest > roof.bridge() + tolerance)
+    fail_check("a ceiling is {:.4g} mm wide, the bridge {:.4g} mm and the tolerance {:.4g} mm",
+               ceilings.widest, roof.bridge(), tolerance);
 }
 
 }  // namespace aerate

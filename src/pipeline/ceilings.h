@@ -27,4 +27,7 @@ struct Ceilings {
 Ceilings measure_ceilings(const Mesh& mesh, std::span<const ShellRange> shells, const Roof& roof,
                           Monitor& monitor);
 
+// Throws FailureError if a ceiling is wider than the bridge by more than `tolerance` mm.
+void require_bridged(const Ceilings& ceilings, const Roof& roof, double tolerance);
+
 }  // namespace aerate

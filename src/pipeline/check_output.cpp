@@ -6,13 +6,12 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 #include <vector>
 
 #include "pipeline/check_failure.h"
 #include "pipeline/check_voids.h"
 #include "pipeline/polled_loop.h"
+#include "pipeline/same_triangles.h"
 
 namespace aerate {
 namespace {
@@ -23,46 +22,12 @@ constexpr double kSummationError = 1e-9;
 // Distances between fp64 balls and fp32 triangles of at most kilometres, mm.
 constexpr double kLimitError = 1e-7;
 
-// Triangles that are compared between two questions to the monitor.
+// Triangles that are added up between two questions to the monitor.
 constexpr std::size_t kTrianglesPerPiece = std::size_t{1} << 22;
 
 // Triangles whose terms are added up in one go; the sums of blocks are then added in their order, so that a
 // volume does not depend on threads.
 constexpr std::size_t kTrianglesPerSum = std::size_t{1} << 14;
-
-bool has_same_corners(const Mesh& a, const Mesh& b, std::size_t triangle) {
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    if (!(a.positions[a.triangles[triangle][corner]] == b.positions[b.triangles[triangle][corner]]))
-      return false;
-  }
-  return true;
-}
-
-// The first of the triangles `first`..`last`-1 that differs; `last` if none does.
-std::size_t find_difference(const Mesh& a, const Mesh& b, std::size_t first, std::size_t last) {
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(first, last), last,
-      [&](const tbb::blocked_range<std::size_t>& range, std::size_t found) {
-        std::size_t i = range.begin();
-        while (i != range.end() && has_same_corners(a, b, i)) ++i;
-        return i == range.end() ? found : std::min(found, i);
-      },
-      [](std::size_t x, std::size_t y) { return std::min(x, y); });
-}
-
-// Corner by corner: the vertices may be numbered differently.
-void require_same_triangles(const Mesh& read_back, const Mesh& reference, const char* what,
-                            Monitor& monitor) {
-  const std::size_t count = reference.triangles.size();
-  if (read_back.triangles.size() < count)
-    fail_check("it has {} triangles instead of {}", read_back.triangles.size(), count);
-  for (std::size_t first = 0; first < count; first += kTrianglesPerPiece) {
-    monitor.check_interrupted();
-    const std::size_t last = std::min(count, first + kTrianglesPerPiece);
-    const std::size_t different = find_difference(read_back, reference, first, last);
-    if (different != last) fail_check("triangle {} is not the one of {}", different, what);
-  }
-}
 
 Mesh first_triangles(const Mesh& mesh, std::size_t count) {
   Mesh part;
@@ -144,9 +109,7 @@ std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const Ex
   const Roof& roof = expected.limits.roof;
   if (!roof.limits_ceilings()) return std::nullopt;
   const Ceilings ceilings = measure_ceilings(read_back, expected.solid.void_shells, roof, monitor);
-  if (ceilings.widest > roof.bridge() + expected.tolerance)
-    fail_check("a ceiling is {:.4g} mm wide, the bridge {:.4g} mm and the tolerance {:.4g} mm",
-               ceilings.widest, roof.bridge(), expected.tolerance);
+  require_bridged(ceilings, roof, expected.tolerance);
   return ceilings;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -10,7 +11,9 @@
 #include "core/void_plan.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
+#include "pipeline/check_drained.h"
 #include "pipeline/check_output.h"
+#include "pipeline/drain.h"
 #include "pipeline/job_log.h"
 #include "pipeline/pack.h"
 #include "pipeline/prepare.h"
@@ -73,7 +76,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
       makes_voids ? without_voids_that_cost(options.packing, options, log) : options.packing;
   report.limits = request.limits;
   report.process = request.process;
-  warn_of_trapped_material(options.packing.process.process, log);
+  if (makes_voids && !options.drainage) warn_of_trapped_material(options.packing.process.process, log);
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);
@@ -86,9 +89,14 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   report.outer_deviation = model.outer_deviation;
   report.volume_estimated = model.inspection.parts_overlap();
 
-  const Packing packing = pack_model(model, request, log);
+  Packing packing = pack_model(model, request, log);
   report.packing_statistics = packing.statistics;
   report.packing_device = packing.device;
+  if (options.drainage) {
+    log.stage("drain");
+    warn_of_wide_tubes(request.process, request.limits.roof, *options.drainage, log);
+    report.drainage = drain_packing(model, packing, *options.drainage, options.tolerance, log);
+  }
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
   const VoidPlan plan{packing.spheres, request.limits.roof};
@@ -100,7 +108,12 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   require_memory_for_voids(plan, report.tolerance_used, outer_triangles);
 
   log.stage("carve");
-  const Solid solid = carve(model, plan, {.tolerance = report.tolerance_used}, log);
+  std::optional<DrainedSolid> drained;
+  if (report.drainage)
+    drained = carve_within(model, packing, report.drainage->plan, report.tolerance_used,
+                           options.max_triangles, log);
+  const Solid solid =
+      drained ? as_solid(*drained) : carve(model, plan, {.tolerance = report.tolerance_used}, log);
   log.check_interrupted();
 
   if (makes_voids && prints_filament(options)) {
@@ -108,29 +121,35 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
     report.print = predict_print(model.mesh, solid, plan, options, log);
   }
 
-  log.stage("write");
-  write_solid(solid, pending.file(), format);
-  log.check_interrupted();
-
-  log.stage("check");
-  const Mesh written = read_back_solid(solid, pending.file().path(), format, log);
-  report.output = check_output(written,
-                               {.solid = solid,
-                                .model = model.mesh,
-                                .inspection = model.inspection,
-                                .plan = plan,
-                                .limits = request.limits,
-                                .tolerance = report.tolerance_used,
-                                .surface = report.surface},
-                               log);
-  report.output.path = options.output;
-  report.output.file_bytes = std::filesystem::file_size(pending.file().path());
-  if (makes_voids) {
-    report.balance = balance_of(model.mesh, report.output, UprightFrame(request.limits.roof.up));
-  }
-  if (report.balance.tips_over()) warn_of_tipping(report, log);
-  log.check_interrupted();
-  pending.file().commit();
+  const auto check = [&](const Mesh& written) {
+    if (drained) {
+      report.output = check_drained(written,
+                                    {.solid = *drained,
+                                     .model = model.mesh,
+                                     .inspection = model.inspection,
+                                     .balls = packing.spheres,
+                                     .plan = report.drainage->plan,
+                                     .limits = request.limits,
+                                     .tolerance = report.tolerance_used},
+                                    *report.drainage, log);
+    } else {
+      report.output = check_output(written,
+                                   {.solid = solid,
+                                    .model = model.mesh,
+                                    .inspection = model.inspection,
+                                    .plan = plan,
+                                    .limits = request.limits,
+                                    .tolerance = report.tolerance_used,
+                                    .surface = report.surface},
+                                   log);
+    }
+    report.output.path = options.output;
+    report.output.file_bytes = std::filesystem::file_size(pending.file().path());
+    if (makes_voids)
+      report.balance = balance_of(model.mesh, report.output, UprightFrame(request.limits.roof.up));
+    if (report.balance.tips_over()) warn_of_tipping(report, log);
+  };
+  write_checked(solid, pending, format, check, log);
 
   report.stages = log.finish();
   report.notices = log.notices();

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/device.h"
+#include "core/drainage.h"
 #include "core/packing.h"
 #include "mesh/load.h"
 #include "packing/adaptive.h"
@@ -74,6 +75,8 @@ struct HollowOptions {
   SurfaceMode surface = SurfaceMode::automatic;
   // If given, voids become modifiers; the output has to be 3MF.
   std::optional<ModifierOptions> modifiers;
+  // If given, voids are joined by channels and opened by escape holes; else each is sealed.
+  std::optional<DrainageRequest> drainage;
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.
   double tolerance = 0.05;

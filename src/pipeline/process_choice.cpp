@@ -143,10 +143,11 @@ void keep_to_balls_without_roofs(ProcessChoice& choice) {
 
 void warn_of_trapped_material(const Process& process, Monitor& monitor) {
   if (process.drainage == Drainage::not_needed) return;
-  monitor.notice(fmt::format(
-      "the voids are sealed: a print by {} keeps its liquid or powder in them, and saves nothing until "
-      "they are drained by channels and holes, which aerate does not cut",
-      process.name));
+  monitor.notice(
+      fmt::format("the voids are sealed: a print by {} keeps its liquid or powder in them, and saves "
+                  "nothing; --drain joins "
+                  "them and opens them by escape holes",
+                  process.name));
 }
 
 std::string processes_in_words() {

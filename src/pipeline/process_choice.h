@@ -26,7 +26,7 @@ struct PrintDirection {
 };
 
 // The process a job is for, and where each limit that it is done under came from. Overhang and bridge are
-// among them where ceilings are limited.
+// among them where ceilings are limited, the diameters of channels and escape holes where voids drain.
 struct ProcessChoice {
   Process process;
   std::vector<LimitOrigin> origins;
@@ -62,7 +62,7 @@ ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>
 // of the largest balls that need none.
 void keep_to_balls_without_roofs(ProcessChoice& choice);
 
-// What the user should know about closed voids in this process, if anything.
+// What the user should know about sealed voids in this process, if anything.
 void warn_of_trapped_material(const Process& process, Monitor& monitor);
 
 // Every built-in process with its figures and their sources, for people.

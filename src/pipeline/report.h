@@ -11,6 +11,7 @@
 #include "mesh/inspect.h"
 #include "packing/verify.h"
 #include "pipeline/ceilings.h"
+#include "pipeline/drainage_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
 
@@ -100,6 +101,8 @@ struct HollowReport {
   std::optional<ModifierOptions> modifiers;
 
   OutputFacts output;
+  // Of voids that drain; absent where each is sealed.
+  std::optional<DrainageFacts> drainage;
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "core/solid.h"
+#include "pipeline/announced_file.h"
 #include "pipeline/options.h"
 #include "printing/write.h"
 
@@ -27,5 +29,10 @@ void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat&
 // Throws what read_back() throws, and FailureError if the parts of the file are not those of the solid.
 Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
                      Monitor& monitor);
+
+// Writes a solid beside its target, reads it back, and makes it the target if `check` takes what was read.
+// What `check` throws leaves the target as it was.
+void write_checked(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
+                   const std::function<void(const Mesh& written)>& check, Monitor& monitor);
 
 }  // namespace aerate

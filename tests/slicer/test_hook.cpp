@@ -168,6 +168,12 @@ TEST_F(Hook, RefusesAFormThatTheSlicerPutElsewhere) {
   EXPECT_TRUE(contains(expect_refused(hook(with_model()), 1), "elsewhere"));
 }
 
+TEST_F(Hook, RefusesAProcessThatPrintsNoFilament) {
+  std::vector<std::string> options = with_model();
+  options.insert(options.end(), {"--process", "sla"});
+  EXPECT_TRUE(contains(expect_refused(hook(options), 2), "process sla prints no filament"));
+}
+
 TEST_F(Hook, RefusesBinaryGcode) {
   write_gcode(std::string("GCDE\1\0\0\0\0\0", 10));
   EXPECT_TRUE(contains(expect_refused(hook(with_model()), 3), "binary G-code"));

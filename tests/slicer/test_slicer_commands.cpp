@@ -120,6 +120,18 @@ TEST_F(Slicing, ShowsAllThatAFailingSlicerPrinted) {
   EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
 }
 
+TEST_F(Slicing, RefusesProcessesThatPrintNoFilament) {
+  const FakeSlicer fake(folder_);
+  for (const char* process : {"sla", "sls", "metal"}) {
+    const ProcessResult result = run({AERATE_EXECUTABLE, "slice", block(), "--slicer", "prusa-slicer",
+                                      "--slicer-path", fake.program(), "-o", output(), "--process", process});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_TRUE(contains(result.err, std::string("process ") + process + " prints no filament"));
+    EXPECT_TRUE(contains(result.err, "aerate hollow"));
+  }
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
 TEST_F(Slicing, RefusesWhatIsMissing) {
   const FakeSlicer fake(folder_);
   EXPECT_EQ(slice(block(), "prusa-slicer", {"--slicer-path", "/none"}).exit_code, 2);

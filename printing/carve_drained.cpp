@@ -1,0 +1,364 @@
+#include "printing/carve_drained.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <tbb/parallel_for.h>
+
+#include "core/error.h"
+#include "printing/ball_template.h"
+#include "printing/cut_surface.h"
+#include "printing/open_ball.h"
+#include "printing/roof_top.h"
+#include "printing/rounding.h"
+
+namespace aerate {
+namespace {
+
+// Beside an opening the surface of a ball is made of longer triangles than elsewhere. If these are too deep a
+// finer template is taken, by this factor in tolerance, so many times at most.
+constexpr double kFinerStep = 0.8;
+constexpr int kMostSteps = 10;
+
+// A prism begins this much inside its ball's surface, and ends beyond the model's by this many radii, mm.
+constexpr double kPrismMargin = 0.02;
+constexpr double kPrismBeyond = 1.8;
+
+// Edges of a roof's circle, in the least distances of openings from it. With 2 an opening's rim could be as
+// near to the middle of an edge as its ends are.
+constexpr double kEdgePerSpacing = 1.5;
+
+Sphere shrunk(const Roof& roof, const Sphere& ball) {
+  Sphere smaller = ball;
+  smaller.radius -=
+      roof.shapes(ball.radius) ? ball.radius * void_shrinkage(roof, ball) : rounding_margin(ball);
+  return smaller;
+}
+
+Tube shrunk(const Tube& tube) {
+  Tube smaller = tube;
+  const Vec3d middle = (tube.start + tube.end) * 0.5;
+  const double half = length(tube.end - tube.start) / 2;
+  smaller.radius -= rounding_margin({middle, half + tube.radius, SphereKind::adaptive});
+  return smaller;
+}
+
+// Fine enough for openings that a tube meets obliquely: their edges are up to 2.5 times as long as its own.
+std::size_t sides_of(const Tube& tube, double tolerance) {
+  return tube_sides(tube.radius, tolerance / 8);
+}
+
+Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof, double tolerance) {
+  Opening opening{shrunk(tube), end, {}};
+  opening.ring = ring_on_ball(opening.tube, end, shrunk(roof, ball), roof.up, sides_of(tube, tolerance));
+  // Counter-clockwise seen from outside the ball.
+  if (end == TubeEnd::end) std::reverse(opening.ring.begin(), opening.ring.end());
+  return opening;
+}
+
+// The circle at which the roof of a void begins, as if an upright tube came out of its ball there. Its edges
+// are short enough for the openings beside it, of which `thinnest` is the least radius.
+Opening shoulder_of(const Sphere& ball, const Roof& roof, double thinnest, double tolerance) {
+  const Sphere smaller = shrunk(roof, ball);
+  const Tube tube{smaller.centre, smaller.centre + roof.up, smaller.radius * roof.cosine};
+  std::size_t sides = tube_sides(tube.radius, tolerance / 8);
+  while (2 * tube.radius * std::sin(std::numbers::pi / static_cast<double>(sides)) >
+         kEdgePerSpacing * kOpeningSpacingShare * thinnest)
+    sides += 2;
+  return {tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, smaller, roof.up, sides)};
+}
+
+// Puts the roof on a ball that is open along its shoulder, where the ring begins at vertex `first`.
+void close_above(OpenedBall& opened, std::size_t first, std::size_t count, const Sphere& ball,
+                 const Roof& roof, double tolerance) {
+  const RoofTop top = roof_top_of(roof, ball, tolerance);
+  const std::size_t rim = opened.positions.size();
+  const double scale = 1 - void_shrinkage(roof, ball);
+  const Vec3d middle = ball.centre + roof.up * (roof.top(ball.radius) * scale);
+  if (top == RoofTop::apex) opened.positions.push_back(middle);
+  for (std::size_t i = 0; i < count && top == RoofTop::flat; ++i) {
+    const Vec3d offset = opened.positions[first + i] - ball.centre;
+    const Vec3d aside = offset - roof.up * dot(offset, roof.up);
+    opened.positions.push_back(middle + aside * (roof.flat_radius() / (ball.radius * roof.cosine)));
+  }
+  const std::vector<Triangle> added = roof_triangles(top, first, count, rim);
+  opened.triangles.insert(opened.triangles.end(), added.begin(), added.end());
+}
+
+CuttingPrism prism_of(const Tube& tube, const Opening& opening) {
+  const Vec3d along = tube.end - tube.start;
+  CuttingPrism prism;
+  prism.axis = along * (1 / length(along));
+  prism.start = tube.start - prism.axis * kPrismMargin;
+  prism.length = length(along) + kPrismMargin + kPrismBeyond * tube.radius;
+  prism.radius = tube.radius;
+  for (const Vec3d p : opening.ring) prism.ring.push_back(to_float(p));
+  return prism;
+}
+
+// Without the elements at these places, ascending.
+template <typename T>
+void remove_at(std::vector<T>& values, std::span<const std::uint32_t> places) {
+  std::size_t kept = 0, next = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (next < places.size() && places[next] == i) {
+      ++next;
+    } else {
+      values[kept++] = values[i];
+    }
+  }
+  values.resize(kept);
+}
+
+// What a cut leaves of a surface; its own triangles come last.
+void apply(const SurfaceCut& cut, Mesh& mesh) {
+  remove_at(mesh.triangles, cut.removed);
+  mesh.triangles.insert(mesh.triangles.end(), cut.surface.begin(), cut.surface.end());
+  mesh.positions.insert(mesh.positions.end(), cut.new_positions.begin(), cut.new_positions.end());
+}
+
+// A ball with its openings, that of its roof last, and where its vertices begin in the result.
+struct Part {
+  std::vector<Opening> openings;
+  OpenedBall surface;
+  std::uint32_t first_vertex = 0;
+
+  std::size_t ring_vertex_count() const {
+    std::size_t count = 0;
+    for (const Opening& opening : openings) count += opening.ring.size();
+    return count;
+  }
+};
+
+// Where the ring of an opening begins among the vertices of its ball.
+struct RingPlace {
+  std::uint32_t ball = 0;
+  std::uint32_t first = 0;
+};
+
+class DrainedCarver {
+ public:
+  DrainedCarver(std::span<const Sphere> balls, const DrainagePlan& plan, const CarveOptions& options,
+                Monitor& monitor)
+      : balls_(balls), plan_(plan), tolerance_(options.tolerance), monitor_(monitor), parts_(balls.size()) {
+    for (const Channel& channel : plan.channels) {
+      channel_rings_.push_back({add_opening(channel.from, channel.tube, TubeEnd::start),
+                                add_opening(channel.to, channel.tube, TubeEnd::end)});
+    }
+    for (const EscapeHole& hole : plan.holes)
+      hole_rings_.push_back(add_opening(hole.from, hole.tube, TubeEnd::start));
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+      if (plan.roof.shapes(balls[i].radius)) add_shoulder(parts_[i], balls[i]);
+    }
+  }
+
+  DrainedSolid carve(const Mesh& outer) {
+    open_balls();
+    cut_outer(outer);
+    for (Part& part : parts_) {
+      part.first_vertex = static_cast<std::uint32_t>(solid_.mesh.positions.size());
+      for (const Vec3d p : part.surface.positions) solid_.mesh.positions.push_back(to_float(p));
+      for (const Triangle& t : part.surface.triangles)
+        add({t[0] + part.first_vertex, t[2] + part.first_vertex, t[1] + part.first_vertex});
+      solid_.void_ends.push_back(solid_.mesh.triangles.size());
+    }
+    for (std::size_t i = 0; i < plan_.channels.size(); ++i) add_channel(i);
+    for (std::size_t i = 0; i < plan_.holes.size(); ++i) add_hole(i);
+    drop_unused_vertices();
+    return std::move(solid_);
+  }
+
+ private:
+  RingPlace add_opening(std::uint32_t ball, const Tube& tube, TubeEnd end) {
+    Part& part = parts_[ball];
+    const RingPlace place{ball, static_cast<std::uint32_t>(part.ring_vertex_count())};
+    part.openings.push_back(opening_of(tube, end, balls_[ball], plan_.roof, tolerance_));
+    return place;
+  }
+
+  void add_shoulder(Part& part, const Sphere& ball) {
+    double thinnest = ball.radius;
+    for (const Opening& opening : part.openings) thinnest = std::min(thinnest, opening.tube.radius);
+    part.openings.push_back(shoulder_of(ball, plan_.roof, thinnest, tolerance_));
+  }
+
+  // Opens a ball and puts its roof on. False if that takes a finer template.
+  bool make_surface(Part& part, const Sphere& ball, std::span<const Vec3d> directions) const {
+    auto opened = open_ball(shrunk(plan_.roof, ball), directions, part.openings);
+    if (!opened || opened->nearest < ball.radius - tolerance_ + void_rounding_margin(plan_.roof, ball))
+      return false;
+    if (plan_.roof.shapes(ball.radius)) {
+      const std::size_t count = part.openings.back().ring.size();
+      close_above(*opened, part.ring_vertex_count() - count, count, ball, plan_.roof, tolerance_);
+    }
+    part.surface = std::move(*opened);
+    return true;
+  }
+
+  void open_balls() {
+    BallLadder ladder;
+    std::vector<std::size_t> pending(balls_.size());
+    std::iota(pending.begin(), pending.end(), std::size_t{0});
+    double tolerance = tolerance_;
+    for (int step = 0; step < kMostSteps && !pending.empty(); ++step, tolerance *= kFinerStep) {
+      monitor_.check_interrupted();
+      std::vector<Sphere> wanted;
+      for (const std::size_t i : pending) wanted.push_back(balls_[i]);
+      ladder.prepare(wanted, tolerance);
+      std::vector<const BallTemplate*> templates;
+      for (const Sphere& ball : wanted) templates.push_back(&ladder[ladder.level_for(ball, tolerance)]);
+      std::vector<char> is_done(pending.size(), 0);
+      tbb::parallel_for(std::size_t{0}, pending.size(), [&](std::size_t i) {
+        const std::size_t ball = pending[i];
+        is_done[i] = make_surface(parts_[ball], balls_[ball], templates[i]->directions) ? 1 : 0;
+      });
+      std::vector<std::size_t> left;
+      for (std::size_t i = 0; i < pending.size(); ++i) {
+        if (is_done[i] == 0) left.push_back(pending[i]);
+      }
+      pending = std::move(left);
+    }
+    if (pending.empty()) return;
+    const Sphere& ball = balls_[pending.front()];
+    throw FailureError("the openings of a void of radius " + std::to_string(ball.radius) + " mm near (" +
+                           std::to_string(ball.centre.x) + ", " + std::to_string(ball.centre.y) + ", " +
+                           std::to_string(ball.centre.z) + ") mm cannot be meshed within a tolerance of " +
+                           std::to_string(tolerance_) + " mm",
+                       "raise --tolerance or --gap, or give a smaller --channel-diameter");
+  }
+
+  // Cuts one hole after the other, so that two may meet the same triangle.
+  void cut_outer(const Mesh& outer) {
+    constexpr std::uint32_t kNew = std::numeric_limits<std::uint32_t>::max();
+    Mesh mesh = outer;
+    std::vector<std::uint32_t> origins(mesh.triangles.size());
+    std::iota(origins.begin(), origins.end(), 0U);
+    for (std::size_t i = 0; i < plan_.holes.size(); ++i) {
+      monitor_.check_interrupted();
+      const EscapeHole& hole = plan_.holes[i];
+      std::size_t opening = 0;
+      for (std::uint32_t first = 0; first < hole_rings_[i].first; ++opening)
+        first += static_cast<std::uint32_t>(parts_[hole.from].openings[opening].ring.size());
+      const CuttingPrism prism = prism_of(hole.tube, parts_[hole.from].openings[opening]);
+      const auto cut = cut_surface(mesh, facets_near(mesh, axis_of(prism), reach_of(prism)), prism);
+      if (!cut)
+        throw FailureError("the surface cannot be cut for an escape hole near (" +
+                               std::to_string(hole.tube.end.x) + ", " + std::to_string(hole.tube.end.y) +
+                               ", " + std::to_string(hole.tube.end.z) + ") mm",
+                           "ask for other places with --escape-hole");
+      for (const std::uint32_t t : cut->removed) {
+        if (origins[t] != kNew) solid_.cut_triangles.push_back(origins[t]);
+      }
+      remove_at(origins, cut->removed);
+      apply(*cut, mesh);
+      origins.resize(mesh.triangles.size(), kNew);
+      hole_sides_.push_back({cut->sides, mesh.positions.size()});
+    }
+    std::sort(solid_.cut_triangles.begin(), solid_.cut_triangles.end());
+    solid_.kept_triangle_count = outer.triangles.size() - solid_.cut_triangles.size();
+    solid_.outer_triangle_count = mesh.triangles.size();
+    solid_.mesh = std::move(mesh);
+  }
+
+  void add(Triangle t) { solid_.mesh.triangles.push_back(t); }
+
+  void add_channel(std::size_t index) {
+    const auto [start, end] = channel_rings_[index];
+    const auto sides = static_cast<std::uint32_t>(sides_of(plan_.channels[index].tube, tolerance_));
+    const std::uint32_t a = parts_[start.ball].first_vertex + start.first;
+    const std::uint32_t b = parts_[end.ball].first_vertex + end.first;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+      const std::uint32_t next = (i + 1) % sides;
+      // The ring at the end runs the other way.
+      add({a + next, a + i, b + sides - 1 - i});
+      add({a + next, b + sides - 1 - i, b + sides - 1 - next});
+    }
+    solid_.channel_ends.push_back(solid_.mesh.triangles.size());
+  }
+
+  void add_hole(std::size_t index) {
+    const RingPlace ring = hole_rings_[index];
+    const auto& [sides, ring_base] = hole_sides_[index];
+    for (Triangle t : sides) {
+      for (std::uint32_t& v : t) {
+        if (v >= ring_base)
+          v = static_cast<std::uint32_t>(v - ring_base) + parts_[ring.ball].first_vertex + ring.first;
+      }
+      add(t);
+    }
+    solid_.hole_ends.push_back(solid_.mesh.triangles.size());
+  }
+
+  void drop_unused_vertices() {
+    Mesh& mesh = solid_.mesh;
+    std::vector<std::uint32_t> renumbered(mesh.positions.size(), 0);
+    for (const Triangle& t : mesh.triangles) {
+      for (const std::uint32_t v : t) renumbered[v] = 1;
+    }
+    std::uint32_t count = 0;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      if (renumbered[v] == 0) continue;
+      mesh.positions[count] = mesh.positions[v];
+      renumbered[v] = count++;
+    }
+    mesh.positions.resize(count);
+    for (Triangle& t : mesh.triangles) {
+      for (std::uint32_t& v : t) v = renumbered[v];
+    }
+  }
+
+  struct RingPair {
+    RingPlace start, end;
+  };
+  struct HoleSides {
+    std::vector<Triangle> triangles;
+    std::size_t ring_base;  // first index that means the ring
+  };
+
+  std::span<const Sphere> balls_;
+  const DrainagePlan& plan_;
+  double tolerance_;
+  Monitor& monitor_;
+  std::vector<Part> parts_;
+  std::vector<RingPair> channel_rings_;
+  std::vector<RingPlace> hole_rings_;
+  std::vector<HoleSides> hole_sides_;
+  DrainedSolid solid_;
+};
+
+}  // namespace
+
+bool can_cut(const FacetsNear& outer, const WayOut& way, std::span<const WayOut> others, const Roof& roof,
+             double tolerance) {
+  const auto prism = [&](const WayOut& out) {
+    return prism_of(out.tube, opening_of(out.tube, TubeEnd::start, out.ball, roof, tolerance));
+  };
+  const CuttingPrism own = prism(way);
+  const std::vector<std::uint32_t> near = outer.find(axis_of(own), reach_of(own));
+  const bool shares_triangles = std::any_of(others.begin(), others.end(), [&](const WayOut& other) {
+    const CuttingPrism cut = prism(other);
+    const std::vector<std::uint32_t> theirs = outer.find(axis_of(cut), reach_of(cut));
+    return std::find_first_of(near.begin(), near.end(), theirs.begin(), theirs.end()) != near.end();
+  });
+  if (!shares_triangles) return cut_surface(outer.mesh(), near, own).has_value();
+  Mesh mesh = outer.mesh();
+  const auto cut_now = [&mesh](const CuttingPrism& cut) {
+    return cut_surface(mesh, facets_near(mesh, axis_of(cut), reach_of(cut)), cut);
+  };
+  for (const WayOut& other : others) {
+    const auto cut = cut_now(prism(other));
+    if (!cut) return false;
+    apply(*cut, mesh);
+  }
+  return cut_now(own).has_value();
+}
+
+DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,
+                           const CarveOptions& options, Monitor& monitor) {
+  return DrainedCarver(balls, plan, options, monitor).carve(outer);
+}
+
+}  // namespace aerate

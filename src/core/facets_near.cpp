@@ -1,0 +1,63 @@
+#include "core/facets_near.h"
+
+#include <algorithm>
+
+namespace aerate {
+namespace {
+
+struct Box {
+  Vec3d lower, upper;
+
+  bool meets(const Box3f& other) const {
+    const Vec3d least = to_double(other.lower), most = to_double(other.upper);
+    return least.x <= upper.x && least.y <= upper.y && least.z <= upper.z && most.x >= lower.x &&
+           most.y >= lower.y && most.z >= lower.z;
+  }
+};
+
+Box box_round(const Segment& segment, double reach) {
+  const Vec3d margin{reach, reach, reach};
+  return {min_of(segment.start, segment.end) - margin, max_of(segment.start, segment.end) + margin};
+}
+
+// Collects instead of measuring: a box counts as near or not.
+struct Collector {
+  const kernels::TriangleBvhView& view;
+  const Segment& segment;
+  double reach;
+  Box box;
+  std::vector<std::uint32_t> found;
+
+  double bound(const Box3f& other) const { return box.meets(other) ? 0 : 1; }
+  double limit() const { return 0.5; }
+  void visit(std::uint32_t i) {
+    const kernels::Facet& facet = view.facets[i];
+    if (box.meets(kernels::box_of(facet)) && distance_to_facet(segment, facet) < reach)
+      found.push_back(view.order[i]);
+  }
+};
+
+}  // namespace
+
+FacetsNear::FacetsNear(const Mesh& mesh) : mesh_(mesh), bvh_(mesh.positions, mesh.triangles) {}
+
+std::vector<std::uint32_t> FacetsNear::find(const Segment& segment, double reach) const {
+  const kernels::TriangleBvhView view = bvh_.view();
+  Collector collector{view, segment, reach, box_round(segment, reach), {}};
+  view.walk(collector);
+  std::sort(collector.found.begin(), collector.found.end());
+  return std::move(collector.found);
+}
+
+std::vector<std::uint32_t> facets_near(const Mesh& mesh, const Segment& segment, double reach) {
+  const Box box = box_round(segment, reach);
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    const kernels::Facet facet{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+    if (box.meets(kernels::box_of(facet)) && distance_to_facet(segment, facet) < reach) found.push_back(i);
+  }
+  return found;
+}
+
+}  // namespace aerate

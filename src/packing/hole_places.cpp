@@ -1,0 +1,276 @@
+#include "packing/hole_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <tbb/parallel_for.h>
+
+#include "core/error.h"
+#include "packing/pools.h"
+#include "packing/tube_through.h"
+
+namespace aerate {
+namespace {
+
+// The longest hole, in its diameters and walls together.
+constexpr double kLongestInDiameters = 3;
+constexpr double kLongestInWalls = 3;
+
+// Balls that are looked at for one hole, and directions from each.
+constexpr std::size_t kMostBalls = 48;
+constexpr int kDirections = 64;
+
+// Places of the axis in each direction.
+constexpr std::size_t kPoints = 3;
+
+// A ball is roomy if the distance of its centre from the hole's rim is at least this share of that between
+// the axes of the hole and of a channel: the two then open into it at 113 degrees from each other or less.
+constexpr double kRoomyShare = 0.6;
+
+// Weights of what makes a place good, in heights of the network: a tenth of it is given for a place that does
+// not show.
+constexpr double kShowingWeight = 0.1;
+constexpr double kLengthWeight = 0.2;  // a millimetre of tube for each millimetre of height
+
+// Near its outer end a tube is nearer to the surface than the wall. It comes up to it no flatter than this:
+// the sine of 30 degrees.
+constexpr double kLeastSlope = 0.5;
+
+constexpr double kOnSurface = 1e-4;  // mm
+
+Vec3d normalised(Vec3d v) {
+  return v * (1 / length(v));
+}
+
+// Points spread evenly over the half of the unit sphere about `axis`, which is the first of them.
+std::vector<Vec3d> directions_about(Vec3d axis) {
+  const TubeFrame frame = frame_of({{0, 0, 0}, axis, 1}, {0, 0, 1});
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Vec3d> directions{axis};
+  for (int i = 0; i < kDirections; ++i) {
+    const double along = 1 - (i + 0.5) / kDirections;
+    const double across = std::sqrt(1 - along * along);
+    directions.push_back(axis * along +
+                         (frame.down * std::cos(golden * i) + frame.across * std::sin(golden * i)) * across);
+  }
+  return directions;
+}
+
+std::string to_text(Vec3d p) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << '(' << p.x << ", " << p.y << ", " << p.z << ") mm";
+  return text.str();
+}
+
+}  // namespace
+
+double longest_hole(const DrainageRequest& request, const PackingLimits& limits) {
+  return kLongestInDiameters * 2 * request.hole_radius + kLongestInWalls * limits.wall;
+}
+
+HolePlaces::HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh,
+                       std::span<const Sphere> spheres, const PackingLimits& limits,
+                       const DrainageRequest& request, const TubeClearance& clearance)
+    : spheres_(spheres),
+      limits_(limits),
+      request_(request),
+      clearance_(clearance),
+      outward_(mesh.positions, outward_shells) {}
+
+// Follows the axis from the tube's start to the surface, by as much as is free at each point.
+bool HolePlaces::reach_surface(EscapeHole& hole) const {
+  const Vec3d axis = normalised(hole.tube.end - hole.tube.start);
+  const double longest = longest_hole(request_, limits_);
+  double along = 0;
+  constexpr int kMostSteps = 200;
+  for (int step = 0; step < kMostSteps && along <= longest; ++step) {
+    const double free = clearance_.to_surface(hole.tube.start + axis * along, longest);
+    if (free < kOnSurface) {
+      hole.tube.end = hole.tube.start + axis * along;
+      return along > 0;
+    }
+    along += free;
+  }
+  return false;
+}
+
+double HolePlaces::showing(Vec3d place) const {
+  const Vec3d up = limits_.roof.up;
+  const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d back = normalised(cross(up, side));
+  const Vec3d normal = clearance_.normal_near(place);
+  return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
+}
+
+bool HolePlaces::is_sound(const EscapeHole& hole) {
+  if (!clearance_.keeps_gap_to_tubes(hole.tube, hole.from, hole.from)) return false;
+  const Vec3d start = hole.tube.start, end = hole.tube.end;
+  const auto [known, is_new] = sound_.try_emplace(
+      {static_cast<double>(hole.from), start.x, start.y, start.z, end.x, end.y, end.z}, false);
+  if (is_new) known->second = is_sound_alone(hole);
+  return known->second;
+}
+
+// But for other tubes.
+bool HolePlaces::is_sound_alone(const EscapeHole& hole) const {
+  const Tube& tube = hole.tube;
+  const Vec3d axis = normalised(tube.end - tube.start);
+  const double needed = tube.radius + limits_.wall;
+  // Outside there has to be room, as wide as the hole.
+  for (const double beyond : {tube.radius, 2 * tube.radius}) {
+    const Vec3d p = tube.end + axis * beyond;
+    if (clearance_.to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
+    if (outward_.view().winding_number(p) != 0) return false;
+  }
+  return clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) &&
+         clearance_.keeps_wall_on_way_out(tube, kLeastSlope);
+}
+
+// A point of the axis of a tube that leaves a ball in this direction: through the centre, or halfway or all
+// the way to where its side would graze the ball, lowered in the sense of `down`. Under a roof it is measured
+// from the highest that leaves the ball below it. nullopt if that is the same as the one before.
+std::optional<Vec3d> HolePlaces::start_inside(const Sphere& ball, Vec3d direction, Vec3d down,
+                                              std::size_t point) const {
+  const double farthest = kWidestTubeShare * ball.radius - request_.hole_radius;
+  const double share = static_cast<double>(point) / (kPoints - 1);
+  if (limits_.roof.shapes(ball.radius) && dot(down, limits_.roof.up) > 0) {
+    const auto way = way_below_roof(ball, limits_.roof, direction, request_.hole_radius);
+    if (!way) return std::nullopt;
+    const double highest = std::min(way->highest, 0.0);
+    if (highest < -farthest || (highest == -farthest && point > 0)) return std::nullopt;
+    return ball.centre + way->across * (highest - share * (highest + farthest));
+  }
+  if (farthest * share == 0 && point > 0) return std::nullopt;
+  // Lowered so far that the tube's axis passes the centre at that distance.
+  const double across = std::sqrt(std::max(1e-6, 1 - dot(direction, down) * dot(direction, down)));
+  return ball.centre + down * std::min(farthest * share / across, ball.radius * 0.99);
+}
+
+std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down, double share) {
+  const Vec3d up = -down;
+  const auto bottom_of = [&](std::uint32_t i) { return dot(spheres_[i].centre, up) - spheres_[i].radius; };
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  std::vector<std::uint32_t> wide;
+  for (const std::uint32_t i : balls) {
+    lowest = std::min(lowest, bottom_of(i));
+    highest = std::max(highest, dot(spheres_[i].centre, up) + spheres_[i].radius);
+    if (request_.hole_radius <= kWidestTubeShare * spheres_[i].radius) wide.push_back(i);
+  }
+  // Beside a hole in a small ball there is no room for a channel.
+  const auto is_roomy = [&](std::uint32_t i) {
+    const double hole = request_.hole_radius, radius = spheres_[i].radius;
+    const double to_rim = std::sqrt(std::max(0.0, radius * radius - hole * hole));
+    return to_rim >= kRoomyShare * tube_spacing(hole, request_.channel_radius);
+  };
+  if (std::any_of(wide.begin(), wide.end(), is_roomy))
+    std::erase_if(wide, [&](std::uint32_t i) { return !is_roomy(i); });
+  std::stable_sort(wide.begin(), wide.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return bottom_of(a) < bottom_of(b); });
+  if (wide.size() > kMostBalls) wide.resize(kMostBalls);
+  const double height = highest - lowest;
+  while (wide.size() > 4 && bottom_of(wide.back()) > lowest + share * height) wide.pop_back();
+
+  look_at(wide, down);
+  struct Ranked {
+    double cost;
+    const Place* place;
+  };
+  std::vector<Ranked> ranked;
+  for (const std::uint32_t i : wide) {
+    for (const Place& place : *places_of(down)[i])
+      ranked.push_back({place.sill - lowest + kShowingWeight * height * place.showing +
+                            kLengthWeight * length(place.hole.tube.end - place.hole.tube.start),
+                        &place});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
+  std::vector<EscapeHole> holes;
+  for (const Ranked& found : ranked) holes.push_back(found.place->hole);
+  return holes;
+}
+
+HolePlaces::PlacesByBall& HolePlaces::places_of(Vec3d down) {
+  return places_[dot(down, limits_.roof.up) > 0 ? 1 : 0];
+}
+
+// Finds the places of those balls that have not been looked at.
+void HolePlaces::look_at(std::span<const std::uint32_t> balls, Vec3d down) {
+  PlacesByBall& places = places_of(down);
+  places.resize(spheres_.size());
+  const std::vector<Vec3d> directions = directions_about(down);
+  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
+    std::optional<std::vector<Place>>& own = places[balls[i]];
+    if (own) return;
+    own.emplace();
+    for (const Vec3d direction : directions) {
+      for (std::size_t point = 0; point < kPoints; ++point) {
+        const auto place = place_of(balls[i], direction, down, point);
+        if (place) own->push_back(*place);
+      }
+    }
+  });
+}
+
+std::optional<HolePlaces::Place> HolePlaces::place_of(std::uint32_t from, Vec3d direction, Vec3d down,
+                                                      std::size_t point) const {
+  const Sphere& ball = spheres_[from];
+  const auto inside = start_inside(ball, direction, down, point);
+  if (!inside) return std::nullopt;
+  const auto tube = tube_out_of(ball, *inside, direction, 1, request_.hole_radius);
+  if (!tube || !opens_below_roof(*tube, TubeEnd::start, ball, limits_.roof) ||
+      !is_bridged(*tube, limits_.roof)) {
+    return std::nullopt;
+  }
+  Place place{{from, *tube, 0}, 0, 0};
+  if (!reach_surface(place.hole)) return std::nullopt;
+  place.sill = sill_of_hole(place.hole, ball, -down);
+  place.showing = showing(place.hole.tube.end);
+  return place;
+}
+
+std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> balls) const {
+  const Vec3d on_surface = clearance_.nearest_on_surface(place);
+  const double off = length(on_surface - place);
+  if (off > 2 * request_.hole_radius) {
+    const bool outside = outward_.view().winding_number(place) == 0;
+    throw UsageError("an escape hole is asked for at " + to_text(place) + ", which is " +
+                         std::to_string(off).substr(0, 5) + " mm " +
+                         (outside ? "outside the model" : "inside the model, away from its surface"),
+                     "the surface is nearest at " + to_text(on_surface));
+  }
+  std::vector<EscapeHole> holes;
+  for (const std::uint32_t from : balls) {
+    const Sphere& ball = spheres_[from];
+    constexpr int kPoints = 4;
+    for (int i = 0; i < 1 + 6 * kPoints; ++i) {
+      // The centre, and points around it along the axes.
+      const double shift = ball.radius * 0.85 * ((i + 5) / 6) / kPoints;
+      constexpr std::array<Vec3d, 6> kAxes{Vec3d{0, 0, -1}, Vec3d{0, 0, 1}, Vec3d{1, 0, 0},
+                                           Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 0}};
+      const Vec3d inside = ball.centre + kAxes[static_cast<std::size_t>((i + 5) % 6)] * shift;
+      const double distance = length(on_surface - inside);
+      if (distance <= ball.radius) continue;
+      const auto tube =
+          tube_out_of(ball, inside, (on_surface - inside) * (1 / distance), 1, request_.hole_radius);
+      if (!tube || !opens_below_roof(*tube, TubeEnd::start, ball, limits_.roof) ||
+          !is_bridged(*tube, limits_.roof)) {
+        continue;
+      }
+      EscapeHole hole{from, *tube, 0};
+      if (reach_surface(hole) && length(hole.tube.end - on_surface) < request_.hole_radius)
+        holes.push_back(hole);
+    }
+  }
+  std::stable_sort(holes.begin(), holes.end(), [](const EscapeHole& a, const EscapeHole& b) {
+    return length_squared(a.tube.end - a.tube.start) < length_squared(b.tube.end - b.tube.start);
+  });
+  return holes;
+}
+
+}  // namespace aerate

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/drainage.h"
+#include "core/mesh.h"
+#include "core/packing.h"
+#include "kernels/winding.h"
+#include "packing/tube_clearance.h"
+
+namespace aerate {
+
+// No hole is longer than this, mm.
+double longest_hole(const DrainageRequest& request, const PackingLimits& limits);
+
+// Where the surface of a model can be opened. What was found is remembered: the same balls are looked at for
+// many plans.
+class HolePlaces {
+ public:
+  // `outward_shells`: see DrainableModel.
+  HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh, std::span<const Sphere> spheres,
+             const PackingLimits& limits, const DrainageRequest& request, const TubeClearance& clearance);
+
+  // Tubes that lead out of some of the balls, the best first. `down` is the way liquid runs: the direction of
+  // gravity as printed for the low hole, the opposite for the high one. A place is the better, the lower it
+  // lies in that sense, the less it shows (facing down or backwards in print orientation; back is +y where up
+  // is +z), and the shorter the tube.
+  // Only balls in the lowest `share` of their height in that sense are looked at.
+  std::vector<EscapeHole> ranked(std::span<const std::uint32_t> balls, Vec3d down, double share);
+
+  // Tubes that lead from balls to a place on the surface near `place`, the shortest first. Throws UsageError
+  // if the surface is farther than the hole's diameter from there.
+  std::vector<EscapeHole> leading_to(Vec3d place, std::span<const std::uint32_t> balls) const;
+
+  // Does the tube keep the wall on its way to the surface, meets it not too obliquely, and open to the
+  // outside of every shell?
+  bool is_sound(const EscapeHole& hole);
+
+ private:
+  struct Place {
+    EscapeHole hole;
+    double sill;     // that liquid has to reach
+    double showing;  // 0 (where it does not show) to 1
+  };
+  using PlacesByBall = std::vector<std::optional<std::vector<Place>>>;
+
+  PlacesByBall& places_of(Vec3d down);
+  void look_at(std::span<const std::uint32_t> balls, Vec3d down);
+  std::optional<Place> place_of(std::uint32_t from, Vec3d direction, Vec3d down, std::size_t point) const;
+  bool is_sound_alone(const EscapeHole& hole) const;
+  bool reach_surface(EscapeHole& hole) const;
+  std::optional<Vec3d> start_inside(const Sphere& ball, Vec3d direction, Vec3d down, std::size_t point) const;
+  double showing(Vec3d place) const;
+
+  std::span<const Sphere> spheres_;
+  PackingLimits limits_;
+  const DrainageRequest& request_;
+  const TubeClearance& clearance_;
+  kernels::HostWinding outward_;
+  std::array<PlacesByBall, 2> places_;  // for print orientation and upside down
+  std::map<std::array<double, 7>, bool> sound_;
+};
+
+}  // namespace aerate

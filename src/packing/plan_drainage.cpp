@@ -1,0 +1,679 @@
+#include "packing/plan_drainage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <set>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "packing/hole_places.h"
+#include "packing/pools.h"
+#include "packing/tube_clearance.h"
+#include "packing/tube_through.h"
+
+namespace aerate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// No channel is longer than the largest void's radius, or this many channel diameters.
+constexpr double kLongestInDiameters = 4;
+
+// Sound places where the surface turned out not to be cut well, for one escape hole, before it is given up:
+// first in this share of the network's height, then anywhere.
+constexpr int kMostCuts = 100;
+constexpr std::array<double, 2> kSharesOfHeight{0.3, 1};
+
+// A network is opened where channels reach this share of its volume, or the most of so many attempts.
+constexpr double kEnoughReached = 0.8;
+constexpr int kMostAttempts = 16;
+
+// Of the voids' volume: more holes and channels are made while more than this stays after both orientations,
+// at most so many holes, each for a pool of at least that size.
+constexpr double kPoolsAimedAt = 0.01;
+constexpr int kMostMoreHoles = 6;
+constexpr double kPoolWorthHole = 0.003;
+
+// Where the axis of a channel passes the balls that it joins: so many radii above the centre of the lower
+// one, and below that of the upper. Steep channels between the top of one and the bottom of the other leave
+// no pools; those through the centres find a way most often.
+struct Attachment {
+  double lower, upper;
+};
+constexpr std::array<Attachment, 7> kAttachments{
+    {{0.7, -0.7}, {0.35, -0.35}, {0, 0}, {0, -0.7}, {0.7, 0}, {-0.35, -0.7}, {-0.7, -0.7}}};
+
+// Channels that leave below a roof are moved so many times at most, since that turns them.
+constexpr int kMostShifts = 4;
+
+// More channels than the tree's have to reduce what stays to this share of it.
+constexpr double kLeastGain = 0.7;
+
+// A void that keeps more than this share of its volume in print orientation is worth a way out upside down.
+constexpr double kPoolWorthWay = 0.01;
+
+std::string shortened(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t size) : parents_(size) {
+    std::iota(parents_.begin(), parents_.end(), 0U);
+  }
+  std::uint32_t root(std::uint32_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+  bool join(std::uint32_t a, std::uint32_t b) {
+    a = root(a), b = root(b);
+    if (a == b) return false;
+    parents_[std::max(a, b)] = std::min(a, b);
+    return true;
+  }
+
+ private:
+  std::vector<std::uint32_t> parents_;
+};
+
+class Planner {
+ public:
+  Planner(const DrainableModel& model, const Packing& packing, const DrainageRequest& request,
+          const CanOpen& can_open, Monitor& monitor)
+      : spheres_(packing.spheres),
+        request_(request),
+        roof_(packing.limits.roof),
+        can_open_(can_open),
+        monitor_(monitor),
+        longest_(std::max(largest_radius(), kLongestInDiameters * 2 * request.channel_radius)),
+        clearance_(model.mesh, spheres_, packing.limits,
+                   std::max(longest_, longest_hole(request, packing.limits)),
+                   std::max(request.channel_radius, request.hole_radius)),
+        places_(model.outward_shells, model.mesh, spheres_, packing.limits, request, clearance_) {
+    plan_.roof = roof_;
+  }
+
+  // Throws as `plan_drainage` does.
+  PlannedDrainage run();
+
+ private:
+  using Members = std::vector<std::uint32_t>;
+  struct Candidate {
+    double height;  // that liquid has to reach
+    double length;
+    std::uint32_t to, from;
+    std::size_t attachment;
+    friend bool operator>(const Candidate& a, const Candidate& b) {
+      return std::tie(a.height, a.length, a.to, a.from, a.attachment) >
+             std::tie(b.height, b.length, b.to, b.from, b.attachment);
+    }
+  };
+  using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
+  using UncutPlace = std::tuple<std::uint32_t, double, double, double>;
+  static constexpr std::size_t kExisting = kAttachments.size();
+
+  double largest_radius() const;
+  double volume_of(const Members& members) const;
+  Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const;
+  std::optional<Channel> channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const;
+  bool is_free(const Channel& channel, std::size_t attachment);
+  std::vector<Members> networks();
+  std::vector<Members> asked_for(std::vector<Members> networks);
+  bool has_low_hole(const Members& members, std::uint32_t network) const;
+  std::ptrdiff_t holes_of(std::uint32_t network) const;
+  void leave_out(std::uint32_t network);
+  bool open_network(const Members& members, std::uint32_t network);
+  void open_and_join(std::span<const Members> networks, double whole_volume);
+  bool open_one(std::vector<EscapeHole> ranked, std::uint32_t network);
+  bool open(const Members& members, Vec3d down, std::uint32_t network);
+  void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) const;
+  std::vector<Candidate> flood(Vec3d up, const std::function<void(const Channel&)>& join);
+  void place(const Channel& channel);
+  void take_back_channels();
+  std::vector<std::pair<double, Members>> upright_pools() const;
+  void open_pools(double whole_volume);
+  void empty_pools();
+  TrappedPools pools_now() const { return compacted().plan.pools; }
+  void leave_out_pools();
+  void leave_out_branch(std::uint32_t root, const SpillHeights& spills);
+  PlannedDrainage compacted() const;
+
+  std::span<const Sphere> spheres_;
+  const DrainageRequest& request_;
+  Roof roof_;
+  const CanOpen& can_open_;
+  Monitor& monitor_;
+  double longest_;
+  TubeClearance clearance_;
+  HolePlaces places_;
+  DrainagePlan plan_;
+  UndrainedVoids dropped_;
+  std::vector<std::uint32_t> network_of_;
+  std::vector<std::vector<std::uint32_t>> channels_of_;
+  std::unordered_map<std::uint64_t, bool> free_;  // by pair and attachment
+  std::set<UncutPlace> uncut_;                    // where the surface is known not to be cut well
+};
+
+double Planner::largest_radius() const {
+  double largest = 0;
+  for (const Sphere& sphere : spheres_) largest = std::max(largest, sphere.radius);
+  return largest;
+}
+
+double Planner::volume_of(const Members& members) const {
+  double volume = 0;
+  for (const std::uint32_t i : members) volume += void_volume(roof_, spheres_[i].radius);
+  return volume;
+}
+
+// Where a channel from a ball with a roof to a higher place has to start so that it leaves the ball below the
+// roof: `inside`, or so much beside it, across the channel and downwards.
+Vec3d Planner::below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const {
+  if (!roof_.shapes(ball.radius)) return inside;
+  for (int i = 0; i < kMostShifts; ++i) {
+    const Vec3d along = to - inside;
+    const auto way = way_below_roof(ball, roof_, along * (1 / length(along)), request_.channel_radius);
+    if (!way) return inside;
+    const double excess = dot(inside - ball.centre, way->across) - way->highest;
+    if (excess <= 0) return inside;
+    inside = inside - way->across * excess;
+  }
+  return inside;
+}
+
+std::optional<Channel> Planner::channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const {
+  const Vec3d up = roof_.up;
+  const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
+  if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
+  const Sphere& lower = spheres_[a];
+  const Sphere& upper = spheres_[b];
+  const Attachment where = kAttachments[attachment];
+  Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
+  const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
+  // Off the centres only where that leaves a channel which rises from the lower to the upper.
+  if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) <= 0)
+    return std::nullopt;
+  inside_lower = below_roof(lower, inside_lower, inside_upper);
+  const auto tube = tube_between(lower, upper, inside_lower, inside_upper, request_.channel_radius);
+  if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
+      !opens_below_roof(*tube, TubeEnd::start, lower, roof_) ||
+      !opens_below_roof(*tube, TubeEnd::end, upper, roof_)) {
+    return std::nullopt;
+  }
+  return Channel{a, b, *tube};
+}
+
+// Whether the channel keeps clear of everything but other channels; remembered.
+bool Planner::is_free(const Channel& channel, std::size_t attachment) {
+  const std::uint64_t key =
+      (static_cast<std::uint64_t>(channel.from) * spheres_.size() + channel.to) * kAttachments.size() +
+      attachment;
+  const auto known = free_.find(key);
+  if (known != free_.end()) return known->second;
+  const bool is_free = clearance_.keeps_gap_to_voids(channel.tube, channel.from, channel.to) &&
+                       clearance_.keeps_wall(channel.tube);
+  free_.emplace(key, is_free);
+  return is_free;
+}
+
+// Sets of voids that channels can join, by falling volume; voids that are too narrow are counted.
+std::vector<Planner::Members> Planner::networks() {
+  struct Pair {
+    double gap;
+    std::uint32_t a, b;
+  };
+  std::vector<bool> is_wide(spheres_.size());
+  for (std::size_t i = 0; i < spheres_.size(); ++i)
+    is_wide[i] = request_.channel_radius <= kWidestTubeShare * spheres_[i].radius;
+  std::vector<Pair> pairs;
+  for (std::uint32_t a = 0; a < spheres_.size(); ++a) {
+    if (!is_wide[a]) {
+      ++dropped_.narrow;
+      dropped_.volume += volume_of({a});
+      continue;
+    }
+    for (const std::uint32_t b : clearance_.neighbours(a)) {
+      if (b > a && is_wide[b])
+        pairs.push_back(
+            {length(spheres_[a].centre - spheres_[b].centre) - spheres_[a].radius - spheres_[b].radius, a,
+             b});
+    }
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
+    return std::tie(p.gap, p.a, p.b) < std::tie(q.gap, q.a, q.b);
+  });
+  DisjointSets sets(spheres_.size());
+  for (const Pair& pair : pairs) {
+    if (sets.root(pair.a) == sets.root(pair.b)) continue;
+    monitor_.check_interrupted();
+    for (std::size_t i = 0; i < kAttachments.size(); ++i) {
+      const auto found = channel(pair.a, pair.b, i);
+      if (found && is_free(*found, i)) {
+        sets.join(pair.a, pair.b);
+        break;
+      }
+    }
+  }
+  std::vector<Members> by_root(spheres_.size());
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    if (is_wide[i]) by_root[sets.root(i)].push_back(i);
+  }
+  std::erase_if(by_root, [](const Members& members) { return members.empty(); });
+  std::stable_sort(by_root.begin(), by_root.end(),
+                   [&](const Members& a, const Members& b) { return volume_of(a) > volume_of(b); });
+  return by_root;
+}
+
+// Opens the networks at the places that were asked for; those that no such place reaches are left out if two
+// or more were.
+std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) {
+  if (request_.escape_holes.empty()) return networks;
+  std::vector<std::uint32_t> network_of(spheres_.size(), kOutside);
+  Members all;
+  for (std::uint32_t n = 0; n < networks.size(); ++n) {
+    for (const std::uint32_t i : networks[n]) network_of[i] = n;
+    all.insert(all.end(), networks[n].begin(), networks[n].end());
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<bool> is_reached(networks.size(), false);
+  for (const Vec3d place : request_.escape_holes) {
+    if (!open_one(places_.leading_to(place, all), 0)) {
+      throw UsageError("no straight hole leads from (" + std::to_string(place.x) + ", " +
+                           std::to_string(place.y) + ", " + std::to_string(place.z) +
+                           ") mm to a void that channels join to others",
+                       "ask for a place nearer to a large void, give a smaller --hole-diameter, or leave "
+                       "--escape-hole out");
+    }
+    is_reached[network_of[plan_.holes.back().from]] = true;
+  }
+  std::vector<Members> reached;
+  std::vector<std::uint32_t> renumbered(networks.size(), kOutside);
+  for (std::size_t n = 0; n < networks.size(); ++n) {
+    if (is_reached[n]) {
+      renumbered[n] = static_cast<std::uint32_t>(reached.size());
+      reached.push_back(std::move(networks[n]));
+    } else {
+      dropped_.unopened += networks[n].size();
+      dropped_.volume += volume_of(networks[n]);
+    }
+  }
+  for (EscapeHole& hole : plan_.holes) hole.network = renumbered[network_of[hole.from]];
+  return reached;
+}
+
+bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
+  int cuts = 0;
+  for (EscapeHole& hole : ranked) {
+    monitor_.check_interrupted();
+    if (!places_.is_sound(hole)) continue;
+    const Vec3d end = hole.tube.end;
+    const UncutPlace place{hole.from, end.x, end.y, end.z};
+    if (uncut_.contains(place)) continue;
+    if (++cuts > kMostCuts) return false;
+    if (!can_open_(hole, plan_.holes)) {
+      uncut_.insert(place);
+      continue;
+    }
+    hole.network = network;
+    clearance_.place(hole.tube, hole.from, hole.from);
+    plan_.holes.push_back(hole);
+    return true;
+  }
+  return false;
+}
+
+// Opens some of the voids where liquid that runs `down` leaves them.
+bool Planner::open(const Members& members, Vec3d down, std::uint32_t network) {
+  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(),
+                     [&](double share) { return open_one(places_.ranked(members, down, share), network); });
+}
+
+std::ptrdiff_t Planner::holes_of(std::uint32_t network) const {
+  return std::count_if(plan_.holes.begin(), plan_.holes.end(),
+                       [network](const EscapeHole& hole) { return hole.network == network; });
+}
+
+// Is there a hole in the lower half of the network, or are there two anywhere?
+bool Planner::has_low_hole(const Members& members, std::uint32_t network) const {
+  double lowest = kInfinity, highest = -kInfinity;
+  for (const std::uint32_t i : members) {
+    const double height = dot(spheres_[i].centre, roof_.up);
+    lowest = std::min(lowest, height - spheres_[i].radius);
+    highest = std::max(highest, height + spheres_[i].radius);
+  }
+  std::size_t count = 0;
+  for (const EscapeHole& hole : plan_.holes) {
+    if (hole.network != network) continue;
+    if (dot(hole.tube.end, roof_.up) < (lowest + highest) / 2) return true;
+    ++count;
+  }
+  return count >= 2;
+}
+
+void Planner::leave_out(std::uint32_t network) {
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    if (network_of_[i] != network) continue;
+    network_of_[i] = kOutside;
+    ++dropped_.unopened;
+    dropped_.volume += volume_of({i});
+  }
+  std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return hole.network == network; });
+  std::erase_if(plan_.channels, [&](const Channel& c) { return network_of_[c.from] == kOutside; });
+}
+
+// Opens a network below and above, before channels take the room for it: at balls from which most of it can
+// be reached. False if there is no place below.
+bool Planner::open_network(const Members& members, std::uint32_t network) {
+  const bool is_asked_for_below = has_low_hole(members, network);
+  Members candidates = members;
+  std::vector<EscapeHole> best;
+  double most = 0;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const std::size_t before = plan_.holes.size();
+    if (!is_asked_for_below && !open(candidates, -roof_.up, network)) break;
+    if (holes_of(network) < 2) open(candidates, roof_.up, network);
+    const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
+    take_back_channels();
+    Members reached;
+    for (const std::uint32_t i : members) {
+      if (ways[i].to != kOutside) reached.push_back(i);
+    }
+    const double volume = volume_of(reached);
+    if (volume > most) {
+      most = volume;
+      best.assign(plan_.holes.begin() + static_cast<std::ptrdiff_t>(before), plan_.holes.end());
+    }
+    std::vector<std::uint32_t> useless;
+    for (std::size_t i = before; i < plan_.holes.size(); ++i) {
+      const bool is_below = i == before && !is_asked_for_below;
+      if (is_below ? volume < kEnoughReached * volume_of(members) : ways[plan_.holes[i].from].to == kOutside)
+        useless.push_back(plan_.holes[i].from);
+    }
+    while (plan_.holes.size() > before) {
+      plan_.holes.pop_back();
+      clearance_.take_back_last();
+    }
+    if (useless.empty()) break;
+    std::erase_if(candidates, [&](std::uint32_t i) {
+      return std::find(useless.begin(), useless.end(), i) != useless.end();
+    });
+  }
+  for (const EscapeHole& hole : best) {
+    clearance_.place(hole.tube, hole.from, hole.from);
+    plan_.holes.push_back(hole);
+  }
+  return holes_of(network) > 0;
+}
+
+// Opens the networks that are worth it below, joins their voids, and opens them above.
+void Planner::open_and_join(std::span<const Members> networks, double whole_volume) {
+  for (std::uint32_t n = 0; n < networks.size(); ++n) {
+    for (const std::uint32_t i : networks[n]) network_of_[i] = n;
+    const bool is_worth_it =
+        !request_.escape_holes.empty() || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
+    if (!is_worth_it || !open_network(networks[n], n)) leave_out(n);
+  }
+  const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
+  for (std::uint32_t n = 0; n < networks.size(); ++n) {
+    Members reached;
+    for (const std::uint32_t i : networks[n]) {
+      if (network_of_[i] == n && ways[i].to != kOutside) reached.push_back(i);
+    }
+    std::erase_if(plan_.holes, [&](const EscapeHole& hole) {
+      return hole.network == n && ways[hole.from].to == kOutside;
+    });
+    if (reached.empty()) continue;
+    if (holes_of(n) >= 2 || open(reached, roof_.up, n)) {
+      ++plan_.network_count;
+      for (const std::uint32_t i : networks[n]) {
+        if (ways[i].to != kOutside) continue;
+        network_of_[i] = kOutside;
+        ++dropped_.unreached;
+        dropped_.volume += volume_of({i});
+      }
+    } else {
+      leave_out(n);
+    }
+  }
+}
+
+void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) const {
+  for (const std::uint32_t index : channels_of_[from]) {
+    const Channel& c = plan_.channels[index];
+    const double sill = sill_of(c.tube, spheres_[c.from], spheres_[c.to], up);
+    queue.push({std::max(height, sill), 0, c.from == from ? c.to : c.from, from, kExisting});
+  }
+  for (const std::uint32_t to : clearance_.neighbours(from)) {
+    if (network_of_[to] != network_of_[from]) continue;
+    for (std::size_t i = 0; i < kAttachments.size(); ++i) {
+      const auto c = channel(from, to, i);
+      if (!c) continue;
+      const double sill = sill_of(c->tube, spheres_[c->from], spheres_[c->to], up);
+      queue.push({std::max(height, sill), length(c->tube.end - c->tube.start), to, from, i});
+    }
+  }
+}
+
+// Finds for each void that can be reached from the lowest hole of its network the way along which its liquid
+// has to rise least to run out, `up` being against gravity. `join` is called for each, in the order of that
+// height, if its last channel is not there yet.
+std::vector<Planner::Candidate> Planner::flood(Vec3d up, const std::function<void(const Channel&)>& join) {
+  std::map<std::uint32_t, const EscapeHole*> roots;
+  for (const EscapeHole& hole : plan_.holes) {
+    const EscapeHole*& root = roots[hole.network];
+    if (root == nullptr || dot(hole.tube.end, up) < dot(root->tube.end, up)) root = &hole;
+  }
+  Queue queue;
+  for (const auto& [network, root] : roots)
+    queue.push({sill_of_hole(*root, spheres_[root->from], up), 0, root->from, kOutside, kExisting});
+  std::vector<Candidate> ways(spheres_.size(), Candidate{kInfinity, 0, kOutside, kOutside, kExisting});
+  while (!queue.empty()) {
+    const Candidate next = queue.top();
+    queue.pop();
+    if (ways[next.to].to != kOutside) continue;
+    if (next.attachment != kExisting) {
+      const auto found = channel(next.from, next.to, next.attachment);
+      if (!is_free(*found, next.attachment) ||
+          !clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) {
+        continue;
+      }
+      monitor_.check_interrupted();
+      join(*found);
+    }
+    ways[next.to] = next;
+    push_ways(queue, next.to, next.height, up);
+  }
+  return ways;
+}
+
+void Planner::place(const Channel& channel) {
+  clearance_.place(channel.tube, channel.from, channel.to);
+  const auto index = static_cast<std::uint32_t>(plan_.channels.size());
+  plan_.channels.push_back(channel);
+  channels_of_[channel.from].push_back(index);
+  channels_of_[channel.to].push_back(index);
+}
+
+void Planner::take_back_channels() {
+  for (; !plan_.channels.empty(); plan_.channels.pop_back()) {
+    channels_of_[plan_.channels.back().from].pop_back();
+    channels_of_[plan_.channels.back().to].pop_back();
+    clearance_.take_back_last();
+  }
+}
+
+// The members of each pool in print orientation, and its volume, the largest first.
+std::vector<std::pair<double, Planner::Members>> Planner::upright_pools() const {
+  const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
+  std::vector<std::uint32_t> pool_of(spheres_.size(), kOutside);
+  std::map<std::uint32_t, std::pair<double, Members>> pools;
+  for (const std::uint32_t i : spills.order) {
+    const std::uint32_t next = spills.towards[i];
+    pool_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? pool_of[next] : i;
+    auto& [volume, members] = pools[pool_of[i]];
+    volume += volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
+    members.push_back(i);
+  }
+  std::vector<std::pair<double, Members>> sorted;
+  for (auto& [root, pool] : pools) sorted.push_back(std::move(pool));
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  return sorted;
+}
+
+// Opens the largest pools below, until little stays.
+void Planner::open_pools(double whole_volume) {
+  for (int more = 0; more < kMostMoreHoles; ++more) {
+    if (pools_now().after_both <= kPoolsAimedAt * whole_volume) return;
+    bool opened = false;
+    for (const auto& [volume, members] : upright_pools()) {
+      if (volume < kPoolWorthHole * whole_volume) return;
+      opened = open(members, -roof_.up, network_of_[members.front()]);
+      if (opened) break;
+    }
+    if (!opened) return;
+  }
+}
+
+// Voids at the foot of a branch stay full in print orientation, and upside down the tree, which was made for
+// print orientation, may not lead from there to the high hole. Adds the channels that do, beside the tree.
+void Planner::empty_pools() {
+  const std::size_t tree_size = plan_.channels.size();
+  const double before = pools_now().after_both;
+  const SpillHeights upright = spill_heights(spheres_, plan_, roof_.up);
+  const std::vector<Candidate> ways = flood(-roof_.up, [](const Channel&) {});
+  std::vector<bool> is_on_way(spheres_.size(), false);
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    if (network_of_[i] == kOutside || upright.height[i] == kInfinity) continue;
+    const double left = volume_below(roof_, spheres_[i], roof_.up, upright.height[i]);
+    if (left < kPoolWorthWay * volume_of({i})) continue;
+    for (std::uint32_t at = i; at != kOutside && ways[at].to != kOutside && !is_on_way[at];
+         at = ways[at].from)
+      is_on_way[at] = true;
+  }
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    if (!is_on_way[i] || ways[i].attachment == kExisting) continue;
+    const auto found = channel(ways[i].from, i, ways[i].attachment);
+    if (clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) place(*found);
+  }
+  // Not worth it: back to the tree.
+  if (pools_now().after_both > kLeastGain * before) plan_.channels.resize(tree_size);
+}
+
+// Branches of which the largest share stays full are not made, until little stays. A branch is a void with
+// all that drains through it; those with an escape hole stay.
+void Planner::leave_out_pools() {
+  for (std::size_t round = 0; round < spheres_.size(); ++round) {
+    const TrappedPools pools = pools_now();
+    if (pools.after_both <= kPoolsAimedAt * pools.total) return;
+    const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
+    std::vector<double> whole(spheres_.size(), 0), full(spheres_.size(), 0);
+    for (const std::uint32_t i : spills.order) {
+      whole[i] = volume_of({i});
+      full[i] = volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
+    }
+    std::vector<bool> has_hole(spheres_.size(), false);
+    for (const EscapeHole& hole : plan_.holes) has_hole[hole.from] = true;
+    std::uint32_t worst = kOutside;
+    double most = kPoolsAimedAt;
+    for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
+      const std::uint32_t i = *at, next = spills.towards[*at];
+      if (!has_hole[i] && full[i] > most * whole[i]) {
+        most = full[i] / whole[i];
+        worst = i;
+      }
+      if (next == kOutside) continue;
+      whole[next] += whole[i];
+      full[next] += full[i];
+      has_hole[next] = has_hole[next] || has_hole[i];
+    }
+    if (worst == kOutside) return;
+    leave_out_branch(worst, spills);
+  }
+}
+
+void Planner::leave_out_branch(std::uint32_t root, const SpillHeights& spills) {
+  std::vector<bool> is_in_branch(spheres_.size(), false);
+  for (const std::uint32_t i : spills.order) {
+    const std::uint32_t next = spills.towards[i];
+    if (i != root && (next == kOutside || !is_in_branch[next])) continue;
+    is_in_branch[i] = true;
+    network_of_[i] = kOutside;
+    ++dropped_.full;
+    dropped_.volume += volume_of({i});
+  }
+  std::erase_if(plan_.channels, [&](const Channel& c) { return is_in_branch[c.from] || is_in_branch[c.to]; });
+}
+
+PlannedDrainage Planner::run() {
+  std::vector<Members> found = networks();
+  if (found.empty()) {
+    throw UsageError("a channel of " + shortened(2 * request_.channel_radius) +
+                         " mm is too wide for every void: the largest has a diameter of " +
+                         shortened(2 * largest_radius()) + " mm",
+                     "give a smaller --channel-diameter, or larger voids with --max-radius");
+  }
+  double whole = 0;
+  for (const Members& members : found) whole += volume_of(members);
+  found = asked_for(std::move(found));
+  network_of_.assign(spheres_.size(), kOutside);
+  channels_of_.resize(spheres_.size());
+  open_and_join(found, whole);
+  if (plan_.network_count == 0) {
+    throw NothingToRemoveError("no place was found for two escape holes of " +
+                                   shortened(2 * request_.hole_radius) + " mm, so no void can drain",
+                               "give a smaller --hole-diameter, larger voids, or places with --escape-hole");
+  }
+  if (request_.escape_holes.size() < 2) open_pools(whole);
+  if (pools_now().after_both > kPoolsAimedAt * whole) empty_pools();
+  leave_out_pools();
+  return compacted();
+}
+
+// The voids that are kept so far, and the plan as it counts them.
+PlannedDrainage Planner::compacted() const {
+  PlannedDrainage result;
+  result.plan = plan_;
+  std::vector<std::uint32_t> renumbered(spheres_.size(), kOutside);
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    if (network_of_[i] == kOutside) continue;
+    renumbered[i] = static_cast<std::uint32_t>(result.kept.size());
+    result.kept.push_back(i);
+  }
+  for (Channel& c : result.plan.channels) {
+    c.from = renumbered[c.from];
+    c.to = renumbered[c.to];
+  }
+  std::map<std::uint32_t, std::uint32_t> networks;
+  for (EscapeHole& hole : result.plan.holes) {
+    hole.from = renumbered[hole.from];
+    hole.network = networks.emplace(hole.network, static_cast<std::uint32_t>(networks.size())).first->second;
+  }
+  result.plan.network_count = networks.size();
+  std::vector<Sphere> kept;
+  for (const std::uint32_t i : result.kept) kept.push_back(spheres_[i]);
+  result.plan.pools = trapped_pools(kept, result.plan);
+  result.dropped = dropped_;
+  return result;
+}
+
+}  // namespace
+
+PlannedDrainage plan_drainage(const DrainableModel& model, const Packing& packing,
+                              const DrainageRequest& request, const CanOpen& can_open, Monitor& monitor) {
+  return Planner(model, packing, request, can_open, monitor).run();
+}
+
+}  // namespace aerate

@@ -1,0 +1,178 @@
+#include "packing/pools.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <tuple>
+
+#include "packing/tube_through.h"
+
+namespace aerate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kSlices = 64;
+
+// Area of the part of a circle below a line at signed distance `level` from its centre.
+double segment_area(double radius, double level) {
+  if (level <= -radius) return 0;
+  if (level >= radius) return std::numbers::pi * radius * radius;
+  return radius * radius * std::acos(-level / radius) + level * std::sqrt(radius * radius - level * level);
+}
+
+// Volume of a tube below a height along `up`, in slices across its axis.
+double tube_volume_below(const Tube& tube, Vec3d up, double height) {
+  const Vec3d along = tube.end - tube.start;
+  const double whole = length(along);
+  const double rise = dot(along, up) / whole;
+  const double tilt = std::sqrt(std::max(0.0, 1 - rise * rise));
+  double area = 0;
+  for (int i = 0; i < kSlices; ++i) {
+    const double middle = dot(tube.start + along * ((i + 0.5) / kSlices), up);
+    const double above = height - middle;
+    const bool upright = tilt * tube.radius < 1e-9;
+    area += upright ? (above > 0 ? std::numbers::pi * tube.radius * tube.radius : 0.0)
+                    : segment_area(tube.radius, std::clamp(above / tilt, -tube.radius, tube.radius));
+  }
+  return area * whole / kSlices;
+}
+
+// Of a ball, up to a height above its lowest point.
+double cap_volume(double radius, double depth) {
+  depth = std::clamp(depth, 0.0, 2 * radius);
+  return std::numbers::pi * depth * depth * (3 * radius - depth) / 3;
+}
+
+// Of a void with a roof, up to a height above its centre: of the ball up to the shoulder, then of the cone.
+double upright_volume_below(const Roof& roof, double radius, double height) {
+  const double shoulder = roof.shoulder(radius);
+  const double of_ball = cap_volume(radius, radius + std::min(height, shoulder));
+  const double rise = std::min(height, roof.top(radius)) - shoulder;
+  if (rise <= 0) return of_ball;
+  const double wide = radius * roof.cosine;
+  const double narrow = wide - rise * roof.sine / roof.cosine;
+  return of_ball + std::numbers::pi / 3 * rise * (wide * wide + wide * narrow + narrow * narrow);
+}
+
+// What stays in one orientation, by ball and by channel, mm3.
+struct Pools {
+  std::vector<double> of_ball, of_channel;
+
+  double sum() const {
+    double total = 0;
+    for (const double volume : of_ball) total += volume;
+    for (const double volume : of_channel) total += volume;
+    return total;
+  }
+};
+
+Pools find_pools(std::span<const Sphere> spheres, const DrainagePlan& plan, const SpillHeights& spills,
+                 Vec3d up) {
+  Pools pools;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    pools.of_ball.push_back(volume_below(plan.roof, spheres[i], up, spills.height[i]));
+  for (const Channel& channel : plan.channels) {
+    const double through_start = std::max(
+        opening_floor(channel.tube, TubeEnd::start, spheres[channel.from], up), spills.height[channel.from]);
+    const double through_end = std::max(opening_floor(channel.tube, TubeEnd::end, spheres[channel.to], up),
+                                        spills.height[channel.to]);
+    pools.of_channel.push_back(tube_volume_below(channel.tube, up, std::min(through_start, through_end)));
+  }
+  return pools;
+}
+
+// What stays of the pools `left` when it runs out along `spills` and may fill `room` on its way.
+double retained(const Pools& left, const Pools& room, const DrainagePlan& plan, const SpillHeights& spills) {
+  std::vector<double> inflow = left.of_ball;
+  std::vector<double> capacity = room.of_ball;
+  double stays = 0;
+  for (std::size_t i = 0; i < plan.channels.size(); ++i) {
+    inflow[plan.channels[i].from] += left.of_channel[i];
+    inflow[plan.channels[i].to] += left.of_channel[i];
+    stays += std::min(left.of_channel[i], room.of_channel[i]);
+  }
+  // Balls of one spill height along a way out are one basin.
+  for (auto ball = spills.order.rbegin(); ball != spills.order.rend(); ++ball) {
+    const std::uint32_t next = spills.towards[*ball];
+    if (next != kOutside && spills.height[next] == spills.height[*ball]) {
+      inflow[next] += inflow[*ball];
+      capacity[next] += capacity[*ball];
+      continue;
+    }
+    const double stays_here = std::min(inflow[*ball], capacity[*ball]);
+    stays += stays_here;
+    if (next != kOutside) inflow[next] += inflow[*ball] - stays_here;
+  }
+  for (std::size_t i = 0; i < inflow.size(); ++i) {
+    if (spills.height[i] == kInfinity) stays += inflow[i];
+  }
+  return stays;
+}
+
+}  // namespace
+
+double sill_of_hole(const EscapeHole& hole, const Sphere& ball, Vec3d up) {
+  const Vec3d along = hole.tube.end - hole.tube.start;
+  const double rise = dot(along, up) / length(along);
+  const double outside =
+      dot(hole.tube.end, up) - hole.tube.radius * std::sqrt(std::max(0.0, 1 - rise * rise));
+  return std::max(opening_floor(hole.tube, TubeEnd::start, ball, up), outside);
+}
+
+double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double height) {
+  const double above_centre = height - dot(planned.centre, up);
+  if (!roof.shapes(planned.radius)) return cap_volume(planned.radius, planned.radius + above_centre);
+  if (dot(up, roof.up) > 0) return upright_volume_below(roof, planned.radius, above_centre);
+  return void_volume(roof, planned.radius) - upright_volume_below(roof, planned.radius, -above_centre);
+}
+
+SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up) {
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> ways(spheres.size());
+  for (const Channel& channel : plan.channels) {
+    const double sill = sill_of(channel.tube, spheres[channel.from], spheres[channel.to], up);
+    ways[channel.from].push_back({channel.to, sill});
+    ways[channel.to].push_back({channel.from, sill});
+  }
+  SpillHeights spills;
+  spills.height.assign(spheres.size(), kInfinity);
+  spills.towards.assign(spheres.size(), kOutside);
+  using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, ball, towards
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
+  for (const EscapeHole& hole : plan.holes)
+    open.push({sill_of_hole(hole, spheres[hole.from], up), hole.from, kOutside});
+  std::vector<bool> done(spheres.size(), false);
+  while (!open.empty()) {
+    const auto [height, ball, towards] = open.top();
+    open.pop();
+    if (done[ball]) continue;
+    done[ball] = true;
+    spills.height[ball] = height;
+    spills.towards[ball] = towards;
+    spills.order.push_back(ball);
+    for (const auto& [next, sill] : ways[ball]) {
+      if (!done[next]) open.push({std::max(height, sill), next, ball});
+    }
+  }
+  return spills;
+}
+
+TrappedPools trapped_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
+  const SpillHeights upright = spill_heights(spheres, plan, plan.roof.up);
+  const SpillHeights turned = spill_heights(spheres, plan, -plan.roof.up);
+  const Pools left = find_pools(spheres, plan, upright, plan.roof.up);
+  const Pools room = find_pools(spheres, plan, turned, -plan.roof.up);
+  TrappedPools pools;
+  pools.upright = left.sum();
+  pools.upside_down = room.sum();
+  pools.after_both = std::min(pools.upright, retained(left, room, plan, turned));
+  for (const Sphere& ball : spheres) pools.total += void_volume(plan.roof, ball.radius);
+  for (const Channel& channel : plan.channels) {
+    pools.total += std::numbers::pi * channel.tube.radius * channel.tube.radius *
+                   length(channel.tube.end - channel.tube.start);
+  }
+  return pools;
+}
+
+}  // namespace aerate

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/drainage.h"
+
+// Where liquid stays in drained voids. It is at rest, flows slowly, and leaves a ball through the lowest
+// point of an opening: the spill height of a ball is the least height, over all ways out, of the highest sill
+// on the way, found for all balls at once by a flood in order of height (priority flood; Barnes, Lehman and
+// Mulla, "Priority-flood", 2014). What lies below it stays.
+
+namespace aerate {
+
+inline constexpr std::uint32_t kOutside = 0xffffffffu;
+
+struct SpillHeights {
+  std::vector<double> height;          // along `up`, by ball; infinite if nothing leads out
+  std::vector<std::uint32_t> towards;  // the ball that it spills into, or kOutside
+  std::vector<std::uint32_t> order;    // the balls that drain, those after their `towards`
+};
+SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up);
+
+// Height that liquid has to reach to leave through an escape hole.
+double sill_of_hole(const EscapeHole& hole, const Sphere& ball, Vec3d up);
+
+// Volume of a void below a height along `up`, which is `roof.up` or the opposite; mm3.
+double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double height);
+
+// What stays in full voids in print orientation, and of that after they have been turned upside down. The
+// latter is an upper bound: what a pool loses runs down its way out and fills what it meets there; what stays
+// in a channel is counted at both of its ends.
+TrappedPools trapped_pools(std::span<const Sphere> spheres, const DrainagePlan& plan);
+
+}  // namespace aerate

@@ -1,0 +1,181 @@
+#include "packing/tube_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "kernels/nearest_point.h"
+#include "packing/sphere_pairs.h"
+
+namespace aerate {
+namespace {
+
+// How far a void reaches beyond its ball at most.
+double reach_of_roofs(std::span<const Sphere> spheres, const Roof& roof) {
+  double reach = 0;
+  for (const Sphere& sphere : spheres) reach = std::max(reach, roof.spine(sphere.radius));
+  return reach;
+}
+
+}  // namespace
+
+double tube_spacing(double radius, double other_radius) {
+  return radius + other_radius + kOpeningSpacingShare * std::max(radius, other_radius);
+}
+
+TubeClearance::TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
+                             double longest, double widest_radius)
+    : mesh_(mesh),
+      bvh_(mesh.positions, mesh.triangles),
+      spheres_(spheres),
+      limits_(limits),
+      longest_(longest),
+      roofs_(reach_of_roofs(spheres, limits.roof)),
+      cell_size_(longest + 2 * widest_radius + std::max(limits.gap, kOpeningSpacingShare * widest_radius)) {
+  const double reach = longest + widest_radius + limits.gap + roofs_;
+  const std::vector<SpherePair> pairs = find_pairs_within(spheres, reach);
+  offsets_.assign(spheres.size() + 1, 0);
+  for (const SpherePair& pair : pairs) {
+    ++offsets_[pair.first + 1];
+    ++offsets_[pair.second + 1];
+  }
+  for (std::size_t i = 0; i < spheres.size(); ++i) offsets_[i + 1] += offsets_[i];
+  std::vector<std::pair<double, std::uint32_t>> rows(2 * pairs.size());
+  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
+  for (const SpherePair& pair : pairs) {
+    rows[next[pair.first]++] = {pair.gap, pair.second};
+    rows[next[pair.second]++] = {pair.gap, pair.first};
+  }
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    std::sort(rows.begin() + static_cast<std::ptrdiff_t>(offsets_[i]),
+              rows.begin() + static_cast<std::ptrdiff_t>(offsets_[i + 1]));
+  }
+  neighbours_.reserve(rows.size());
+  gaps_.reserve(rows.size());
+  for (const auto& [gap, ball] : rows) {
+    gaps_.push_back(gap);
+    neighbours_.push_back(ball);
+  }
+}
+
+std::span<const std::uint32_t> TubeClearance::neighbours(std::uint32_t ball) const {
+  const auto first = gaps_.begin() + static_cast<std::ptrdiff_t>(offsets_[ball]);
+  const auto last = gaps_.begin() + static_cast<std::ptrdiff_t>(offsets_[ball + 1]);
+  const auto count = static_cast<std::size_t>(std::lower_bound(first, last, longest_) - first);
+  return std::span(neighbours_).subspan(offsets_[ball], count);
+}
+
+double TubeClearance::to_surface(Vec3d point, double limit) const {
+  return std::sqrt(bvh_.view().nearest(point, limit * limit).distance_squared);
+}
+
+Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
+  const kernels::NearestFacet nearest = bvh_.view().nearest(point, std::numeric_limits<double>::infinity());
+  return kernels::nearest_point_on_facet(point, bvh_.view().facets[nearest.facet]).point;
+}
+
+Vec3d TubeClearance::normal_near(Vec3d point) const {
+  const kernels::NearestFacet nearest = bvh_.view().nearest(point, std::numeric_limits<double>::infinity());
+  const kernels::Facet& facet = bvh_.view().facets[nearest.facet];
+  const Vec3d a = to_double(facet.a);
+  const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);
+  const double size = length(normal);
+  return size > 0 ? normal * (1 / size) : Vec3d{0, 0, 0};
+}
+
+bool TubeClearance::keeps_wall(const Tube& tube) const {
+  return keeps_away(tube, tube.radius + limits_.wall, std::numeric_limits<double>::infinity());
+}
+
+bool TubeClearance::keeps_wall_on_way_out(const Tube& tube, double slope) const {
+  return keeps_away(tube, tube.radius + limits_.wall, slope);
+}
+
+bool TubeClearance::keeps_away(const Tube& tube, double most, double slope) const {
+  const bool comes_out = slope < std::numeric_limits<double>::infinity();
+  const double whole = length(tube.end - tube.start);
+  // What is asked of a point at this way from the end.
+  const auto needed = [&](double left) { return comes_out ? std::min(most, slope * left) : most; };
+  // Where the surface is oblique and near, only short pieces are shown clear.
+  const double shortest = comes_out ? kWallSlack / 32 : kWallSlack / 2;
+  // Pieces of the axis still to be shown clear, as shares of it.
+  std::vector<std::pair<double, double>> open{{0.0, 1.0}};
+  while (!open.empty()) {
+    const auto [from, to] = open.back();
+    open.pop_back();
+    if (comes_out && (1 - from) * whole <= kWallSlack) continue;
+    const double middle = (from + to) / 2;
+    const double half = (to - from) / 2 * whole;
+    const double everywhere = needed((1 - from) * whole) + half;
+    const double distance =
+        to_surface(tube.start + (tube.end - tube.start) * middle, everywhere * (1 + 1e-9));
+    if (distance >= everywhere) continue;
+    if (distance < needed((1 - middle) * whole) || half < shortest) return false;
+    open.push_back({from, middle});
+    open.push_back({middle, to});
+  }
+  return true;
+}
+
+bool TubeClearance::keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const {
+  const double reach = length(tube.end - tube.start) + tube.radius + limits_.gap + roofs_;
+  for (std::size_t i = offsets_[from]; i < offsets_[from + 1] && gaps_[i] <= reach; ++i) {
+    if (neighbours_[i] == to) continue;
+    const Sphere& other = spheres_[neighbours_[i]];
+    const Segment axis{tube.start, tube.end};
+    const double needed = tube.radius + limits_.gap;
+    const double from_ball = distance_to_point(axis, other.centre) - other.radius;
+    if (from_ball < needed) return false;
+    const double spine = limits_.roof.spine(other.radius);
+    if (spine > 0 && from_ball < needed + spine && distance_to_void(axis, limits_.roof, other) < needed)
+      return false;
+  }
+  return true;
+}
+
+std::uint64_t TubeClearance::cell_of(Vec3d point, int dx, int dy, int dz) const {
+  const auto cell = [this](double x, int offset) {
+    constexpr std::int64_t kMiddle = 1 << 20;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / cell_size_)) + offset +
+                                      kMiddle) &
+           0x1fffff;
+  };
+  return cell(point.x, dx) << 42 | cell(point.y, dy) << 21 | cell(point.z, dz);
+}
+
+bool TubeClearance::keeps_gap_to_tubes(const Tube& tube, std::uint32_t from, std::uint32_t to) const {
+  const Vec3d middle = (tube.start + tube.end) * 0.5;
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const auto found = cells_.find(cell_of(middle, dx, dy, dz));
+        if (found == cells_.end()) continue;
+        for (const std::uint32_t other : found->second) {
+          const Placed& placed = tubes_[other];
+          const bool meet = placed.from == from || placed.from == to || placed.to == from || placed.to == to;
+          const double openings = tube_spacing(tube.radius, placed.tube.radius);
+          const double spacing =
+              meet ? openings : std::max(openings, tube.radius + placed.tube.radius + limits_.gap);
+          if (distance_between({tube.start, tube.end}, {placed.tube.start, placed.tube.end}) < spacing)
+            return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+void TubeClearance::place(const Tube& tube, std::uint32_t from, std::uint32_t to) {
+  cells_[cell_of((tube.start + tube.end) * 0.5, 0, 0, 0)].push_back(
+      static_cast<std::uint32_t>(tubes_.size()));
+  tubes_.push_back({tube, from, to});
+}
+
+void TubeClearance::take_back_last() {
+  const Tube& tube = tubes_.back().tube;
+  cells_[cell_of((tube.start + tube.end) * 0.5, 0, 0, 0)].pop_back();
+  tubes_.pop_back();
+}
+
+}  // namespace aerate

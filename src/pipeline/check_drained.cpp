@@ -1,0 +1,342 @@
+#include "pipeline/check_drained.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "core/facets_near.h"
+#include "core/segment_distance.h"
+#include "kernels/winding.h"
+#include "mesh/topology.h"
+#include "packing/verify.h"
+#include "pipeline/ceilings.h"
+#include "pipeline/check_drained_parts.h"
+#include "pipeline/check_failure.h"
+#include "pipeline/mesh_part.h"
+#include "pipeline/planned_shape.h"
+#include "pipeline/same_triangles.h"
+
+namespace aerate {
+namespace {
+
+// Sums of fp64 terms over millions of triangles: relative to the volume that they add up to.
+constexpr double kSummationError = 1e-9;
+
+constexpr double kLimitError = 1e-7;  // mm
+
+// Vertices on a cut, rounded to fp32: a few units in the last place of the largest coordinate.
+constexpr double kRoundingShare = 5e-7;
+
+// A hole is cut by a prism that ends so many radii beyond the surface; triangles are taken along that are a
+// thousandth of a millimetre beyond it.
+constexpr double kCutBeyond = 1.8;
+constexpr double kCutMargin = 2e-3;
+
+// How far round a hole triangles are looked at, mm.
+constexpr double kNeighbourhood = 0.5;
+
+// Points along a channel at which its wall is measured are so far apart, mm: between them it may be less by
+// half of that.
+constexpr double kSpacing = 0.05;
+
+double rounding_of(const Mesh& mesh) {
+  const Box3f box = bounding_box(mesh);
+  double largest = 1;
+  for (const Vec3d p : {to_double(box.lower), to_double(box.upper)})
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return kRoundingShare * largest;
+}
+
+Vec3d axis_of(const Tube& tube) {
+  const Vec3d along = tube.end - tube.start;
+  return along * (1 / length(along));
+}
+
+Segment cut_of(const Tube& tube) {
+  return {tube.start, tube.end + axis_of(tube) * (kCutBeyond * tube.radius)};
+}
+
+// Where a hole has come out, as far from the surface as it is wide.
+Vec3d mouth_of(const Tube& tube) {
+  return tube.end + axis_of(tube) * tube.radius;
+}
+
+kernels::Facet facet_of(const Mesh& mesh, const Triangle& t) {
+  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+}
+
+// The model's triangles but the cut ones, in their order.
+void require_kept_outer(const Mesh& read_back, const ExpectedDrained& expected) {
+  const std::vector<std::uint32_t>& cut = expected.solid.cut_triangles;
+  const std::size_t count = expected.model.triangles.size();
+  if (expected.solid.kept_triangle_count + cut.size() != count)
+    fail_check("{} triangles of the model were kept and {} cut, it has {}",
+               expected.solid.kept_triangle_count, cut.size(), count);
+  std::size_t next_cut = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (next_cut < cut.size() && cut[next_cut] == i) {
+      ++next_cut;
+    } else if (!has_same_corners(read_back, i - next_cut, expected.model, i)) {
+      fail_check("triangle {} is not the one of the model", i - next_cut);
+    }
+  }
+  if (next_cut != cut.size()) fail_check("the cut triangles are not in order");
+}
+
+void require_cuts_at_holes(const ExpectedDrained& expected) {
+  for (const std::uint32_t i : expected.solid.cut_triangles) {
+    const kernels::Facet facet = facet_of(expected.model, expected.model.triangles[i]);
+    const bool is_at_hole =
+        std::any_of(expected.plan.holes.begin(), expected.plan.holes.end(), [&](const EscapeHole& hole) {
+          return distance_to_facet(cut_of(hole.tube), facet) < hole.tube.radius + kCutMargin;
+        });
+    if (!is_at_hole) fail_check("triangle {} of the model was cut away from every escape hole", i);
+  }
+}
+
+// What is left of cut triangles lies in the model's surface.
+void require_remains_on_surface(const Mesh& read_back, const ExpectedDrained& expected) {
+  std::vector<Vec3d> corners;
+  for (std::size_t i = expected.solid.kept_triangle_count; i < expected.solid.outer_triangle_count; ++i) {
+    for (const std::uint32_t v : read_back.triangles[i]) corners.push_back(to_double(read_back.positions[v]));
+  }
+  double farthest = 0;
+  for (const double distance : distances_to_surface(expected.model, corners))
+    farthest = std::max(farthest, distance);
+  if (farthest > rounding_of(expected.model))
+    fail_check("the outer surface beside a hole is {:.3g} mm from the model's", farthest);
+}
+
+// Edges by kind, and vertices - edges + triangles.
+struct EdgeCounts {
+  std::size_t open = 0, misoriented = 0, non_manifold = 0;
+  std::int64_t euler = 0;
+};
+EdgeCounts count_edges(const Mesh& mesh, const EdgeUses& uses) {
+  EdgeCounts counts;
+  std::vector<bool> is_used(mesh.positions.size(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) is_used[v] = true;
+  }
+  counts.euler =
+      std::count(is_used.begin(), is_used.end(), true) + static_cast<std::int64_t>(mesh.triangles.size());
+  for (std::size_t low = 0; low < uses.row_count(); ++low) {
+    uses.for_each_edge(low, [&](std::uint32_t from, std::uint32_t, std::span<const EdgeUse> edge) {
+      const EdgeBalance balance = balance_of(mesh, from, edge);
+      counts.open += balance.is_open() ? 1U : 0U;
+      counts.misoriented += balance.is_misoriented() ? 1U : 0U;
+      counts.non_manifold += balance.is_non_manifold() ? 1U : 0U;
+      --counts.euler;
+    });
+  }
+  return counts;
+}
+
+void require_sound_edges(const Mesh& read_back, const EdgeUses& uses, const ExpectedDrained& expected) {
+  const EdgeCounts counts = count_edges(read_back, uses);
+  if (counts.open > 0) fail_check("it has {} open edges", counts.open);
+  if (counts.misoriented > 0) fail_check("it has {} misoriented edges", counts.misoriented);
+  const EdgeCounts model = count_edges(expected.model, EdgeUses(expected.model));
+  if (counts.non_manifold > model.non_manifold)
+    fail_check("it has {} non-manifold edges, the model has {}", counts.non_manifold, model.non_manifold);
+  // A void adds a sphere (2); a tube takes a disc at either end (-2), and is a cylinder (0).
+  const auto tubes = static_cast<std::int64_t>(expected.plan.channels.size() + expected.plan.holes.size());
+  const std::int64_t planned = model.euler + 2 * static_cast<std::int64_t>(expected.balls.size()) - 2 * tubes;
+  if (counts.euler != planned)
+    fail_check(
+        "its Euler characteristic is {} instead of {}: voids, channels and holes do not join as planned",
+        counts.euler, planned);
+}
+
+// Shells with inner surface that are inward, so that nothing joins them to the outside; and holes that open
+// into a cavity of the model.
+std::size_t count_sealed(const Mesh& read_back, const EdgeUses& uses, const ExpectedDrained& expected) {
+  const ShellLabels labels = label_shells(read_back, uses);
+  const std::vector<Shell> shells = describe_shells(read_back, labels);
+  std::vector<bool> is_sealed(labels.count, false);
+  for (std::size_t i = expected.solid.outer_triangle_count; i < read_back.triangles.size(); ++i) {
+    const std::uint32_t label = labels.of_triangle[i];
+    if (label == kNoShell) fail_check("triangle {} belongs to no shell", i);
+    if (shells[label].volume <= 0) is_sealed[label] = true;
+  }
+  const std::vector<Triangle> outward = outward_shells(expected.model, expected.inspection);
+  const kernels::HostWinding winding(expected.model.positions, outward);
+  std::vector<Vec3d> mouths;
+  for (const EscapeHole& hole : expected.plan.holes) mouths.push_back(mouth_of(hole.tube));
+  const std::vector<int> around = winding.winding_numbers(mouths);
+  return static_cast<std::size_t>(std::count(is_sealed.begin(), is_sealed.end(), true) +
+                                  std::count_if(around.begin(), around.end(), [](int w) { return w != 0; }));
+}
+
+void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
+  for (std::size_t i = 0; i < plan.holes.size(); ++i) {
+    const Tube& tube = plan.holes[i].tube;
+    const Mesh part = part_of(read_back, facets_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
+    const SelfIntersections found = find_self_intersections(part);
+    if (found.pair_count == 0) continue;
+    const Vec3d place = found.places.front();
+    fail_check(
+        "{} pairs of triangles intersect at escape hole {}, the first near ({:.3f}, {:.3f}, {:.3f}) mm",
+        found.pair_count, i, place.x, place.y, place.z);
+  }
+}
+
+// Least distance between the channels' sides and the surface, and no less than it is by half of kSpacing.
+double channel_wall(const Mesh& model, const DrainagePlan& plan) {
+  std::vector<Vec3d> points;
+  std::vector<double> radii;
+  for (const Channel& channel : plan.channels) {
+    const Vec3d along = channel.tube.end - channel.tube.start;
+    const auto steps = static_cast<std::size_t>(std::ceil(length(along) / kSpacing)) + 1;
+    for (std::size_t i = 0; i <= steps; ++i) {
+      points.push_back(channel.tube.start + along * (static_cast<double>(i) / static_cast<double>(steps)));
+      radii.push_back(channel.tube.radius);
+    }
+  }
+  double least = std::numeric_limits<double>::infinity();
+  const std::vector<double> distances = distances_to_surface(model, points);
+  for (std::size_t i = 0; i < points.size(); ++i) least = std::min(least, distances[i] - radii[i]);
+  return least - kSpacing / 2;
+}
+
+// Balls and channels outside them, and holes to where their cut ends.
+double most_removed(const ExpectedDrained& expected) {
+  double volume = 0;
+  for (const Sphere& ball : expected.balls) volume += void_volume(expected.plan.roof, ball.radius);
+  const auto add = [&](const Tube& tube, double beyond) {
+    volume +=
+        std::numbers::pi * tube.radius * tube.radius * (length(tube.end - tube.start) + beyond * tube.radius);
+  };
+  for (const Channel& channel : expected.plan.channels) add(channel.tube, 0);
+  for (const EscapeHole& hole : expected.plan.holes) add(hole.tube, kCutBeyond);
+  return volume;
+}
+
+double least_removed(const ExpectedDrained& expected) {
+  double volume = 0;
+  for (const Sphere& ball : expected.balls) {
+    const PlannedShape shape(expected.plan.roof, ball);
+    volume += shape.volume_within(expected.tolerance);
+  }
+  return volume;
+}
+
+void measure_volumes(const Mesh& read_back, const ExpectedDrained& expected, OutputFacts& facts) {
+  const VolumeMoments outer = volume_moments(expected.model);
+  const VolumeMoments whole = volume_moments(read_back);
+  facts.volume_removed = outer.volume - whole.volume;
+  const double error = kSummationError * outer.volume;
+  if (facts.volume_removed < least_removed(expected) - error ||
+      facts.volume_removed > most_removed(expected) + error)
+    fail_check("{:.9g} mm3 are removed, planned were {:.9g} to {:.9g}", facts.volume_removed,
+               least_removed(expected), most_removed(expected));
+  // With overlapping parts the signed volume counts the overlap twice; a slicer fills it once.
+  const bool overlapping = expected.inspection.parts_overlap();
+  facts.volume_before = overlapping ? expected.inspection.filled_volume : outer.volume;
+  facts.volume_after = facts.volume_before - facts.volume_removed;
+  if (overlapping) return;
+  facts.centre_of_mass_before = outer.first_moment * (1 / outer.volume);
+  facts.centre_of_mass_after = whole.first_moment * (1 / whole.volume);
+}
+
+Clearances measure_limits(const std::vector<Sphere>& balls, const ExpectedDrained& expected) {
+  const Clearances clearances = measure_clearances(expected.model, balls, expected.plan.roof);
+  if (clearances.wall < expected.limits.wall - kLimitError)
+    fail_check("the wall is {:.9g} mm, the limit {:.9g} mm", clearances.wall, expected.limits.wall);
+  if (clearances.gap && *clearances.gap < expected.limits.gap - kLimitError)
+    fail_check("the gap is {:.9g} mm, the limit {:.9g} mm", *clearances.gap, expected.limits.gap);
+  return clearances;
+}
+
+// Of all inner surface: voids, channels and holes.
+std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const ExpectedDrained& expected,
+                                                 Monitor& monitor) {
+  const Roof& roof = expected.plan.roof;
+  if (!roof.limits_ceilings()) return std::nullopt;
+  const std::size_t first = expected.solid.outer_triangle_count;
+  const std::vector<ShellRange> inner{{first, read_back.triangles.size() - first, 0, 0}};
+  const Ceilings ceilings = measure_ceilings(read_back, inner, roof, monitor);
+  require_bridged(ceilings, roof, expected.tolerance);
+  return ceilings;
+}
+
+}  // namespace
+
+std::vector<Triangle> outward_shells(const Mesh& model, const Inspection& inspection) {
+  const bool has_cavities = std::any_of(inspection.shells.begin(), inspection.shells.end(),
+                                        [](const Shell& shell) { return shell.volume < 0; });
+  if (!has_cavities) return model.triangles;
+  const ShellLabels labels = label_shells(model, EdgeUses(model));
+  const std::vector<Shell> shells = describe_shells(model, labels);
+  std::vector<Triangle> outward;
+  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
+    const std::uint32_t label = labels.of_triangle[i];
+    if (label != kNoShell && shells[label].volume >= 0) outward.push_back(model.triangles[i]);
+  }
+  return outward;
+}
+
+bool is_crossed_near(const FacetsNear& model, const Tube& tube) {
+  const Mesh part = part_of(model.mesh(), model.find(cut_of(tube), tube.radius + kNeighbourhood));
+  return find_self_intersections(part).pair_count > 0;
+}
+
+OutputFacts check_drained(const Mesh& read_back, const ExpectedDrained& expected, DrainageFacts& drainage,
+                          Monitor& monitor) {
+  const DrainedSolid& solid = expected.solid;
+  require_same_triangles(read_back, solid.mesh, "the result", monitor);
+  if (read_back.triangles.size() != solid.mesh.triangles.size())
+    fail_check("it has {} triangles too many", read_back.triangles.size() - solid.mesh.triangles.size());
+  if (!expected.inspection.closed()) fail_check("the outer surface is not closed");
+  require_kept_outer(read_back, expected);
+  require_cuts_at_holes(expected);
+  require_remains_on_surface(read_back, expected);
+  monitor.check_interrupted();
+
+  const DrainedParts parts =
+      check_drained_parts(read_back, solid, expected.balls, expected.plan, expected.tolerance, monitor);
+  check_tube_gaps(expected.balls, expected.plan, expected.limits.gap);
+  drainage.channel_wall = channel_wall(expected.model, expected.plan);
+  if (drainage.channel_wall < expected.limits.wall - kSpacing / 2 - kLimitError)
+    fail_check("the wall beside a channel is {:.9g} mm, the limit {:.9g} mm", drainage.channel_wall,
+               expected.limits.wall);
+  monitor.check_interrupted();
+
+  const EdgeUses uses(read_back);
+  require_sound_edges(read_back, uses, expected);
+  monitor.check_interrupted();
+  drainage.sealed_cavities = count_sealed(read_back, uses, expected);
+  if (drainage.sealed_cavities > 0) fail_check("{} cavities are sealed", drainage.sealed_cavities);
+  require_no_crossings(read_back, expected.plan);
+  monitor.check_interrupted();
+
+  drainage.cut_triangles = solid.cut_triangles.size();
+  drainage.cavities_of_model = static_cast<std::size_t>(
+      std::count_if(expected.inspection.shells.begin(), expected.inspection.shells.end(),
+                    [](const Shell& shell) { return shell.volume < 0; }));
+
+  OutputFacts facts;
+  facts.triangle_count = read_back.triangles.size();
+  facts.outer_triangle_count = solid.outer_triangle_count;
+  facts.void_triangle_count = facts.triangle_count - facts.outer_triangle_count;
+  facts.void_count = parts.balls.size();
+  facts.smallest_radius = std::numeric_limits<double>::infinity();
+  for (const Sphere& ball : parts.balls) {
+    facts.smallest_radius = std::min(facts.smallest_radius, ball.radius);
+    facts.largest_radius = std::max(facts.largest_radius, ball.radius);
+  }
+  facts.void_deviation = parts.depth;
+  facts.roof_count = static_cast<std::size_t>(
+      std::count_if(expected.balls.begin(), expected.balls.end(),
+                    [&](const Sphere& ball) { return expected.plan.roof.shapes(ball.radius); }));
+  facts.ceilings = measure_limited_ceilings(read_back, expected, monitor);
+  facts.clearances = measure_limits(parts.balls, expected);
+  measure_volumes(read_back, expected, facts);
+  return facts;
+}
+
+}  // namespace aerate

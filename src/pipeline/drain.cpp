@@ -1,0 +1,112 @@
+#include "pipeline/drain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "pipeline/check_drained.h"
+#include "printing/carve_drained.h"
+
+namespace aerate {
+namespace {
+
+// By this factor the tolerance is loosened, so many times at most.
+constexpr double kLooser = 1.25;
+constexpr int kMostTries = 12;
+
+// Above this share of the voids' volume pools are worth a notice.
+constexpr double kPoolsAimedAt = 0.01;
+
+std::string reasons(const UndrainedVoids& dropped) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* why) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, why);
+  };
+  add(dropped.narrow, "too small for a channel");
+  add(dropped.unreached, "with no room for a channel");
+  add(dropped.unopened, "in groups with no place for two escape holes, or not worth them");
+  add(dropped.full, "that would stay full");
+  return text;
+}
+
+void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Monitor& monitor) {
+  const UndrainedVoids& dropped = drainage.dropped;
+  if (dropped.count() > 0)
+    monitor.notice(fmt::format("{} of {} voids ({:.1f} mm3) cannot be drained and are not made: {}",
+                               dropped.count(), packed, dropped.volume, reasons(dropped)));
+  const TrappedPools& pools = drainage.plan.pools;
+  if (pools.after_both > kPoolsAimedAt * pools.total)
+    monitor.notice(fmt::format(
+        "{:.1f} mm3 ({:.2f} % of the voids) cannot run out, neither in print orientation nor upside down",
+        pools.after_both, 100 * pools.after_both / pools.total));
+}
+
+}  // namespace
+
+DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const DrainageRequest& request,
+                            double tolerance, Monitor& monitor) {
+  const std::vector<Triangle> outward = outward_shells(model.mesh, model.inspection);
+  const FacetsNear facets(model.mesh);
+  const auto way_of = [&](const EscapeHole& hole) { return WayOut{hole.tube, packing.spheres[hole.from]}; };
+  const auto can_open = [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
+    std::vector<WayOut> before;
+    for (const EscapeHole& other : others) before.push_back(way_of(other));
+    return can_cut(facets, way_of(hole), before, packing.limits.roof, tolerance) &&
+           !is_crossed_near(facets, hole.tube);
+  };
+  PlannedDrainage planned = plan_drainage({model.mesh, outward}, packing, request, can_open, monitor);
+  const std::size_t packed = packing.spheres.size();
+  std::vector<Sphere> kept;
+  for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
+  packing.spheres = std::move(kept);
+  DrainageFacts drainage{.request = request, .plan = std::move(planned.plan), .dropped = planned.dropped};
+  tell_what_was_dropped(drainage, packed, monitor);
+  return drainage;
+}
+
+void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,
+                        Monitor& monitor) {
+  if (!roof.limits_ceilings()) return;
+  const auto tell = [&](double radius, const char* what, const char* option) {
+    const double width = 2 * radius * roof.cosine;
+    if (width <= roof.bridge() * (1 + 1e-9)) return;
+    // Where sqrt(1 - (sine / lean)^2) of the diameter is the bridge.
+    const double share = roof.bridge() / (2 * radius);
+    const double steepest = std::asin(std::min(1.0, roof.sine / std::sqrt(1 - share * share)));
+    monitor.notice(fmt::format(
+        "{} of {:g} mm lean out of the vertical by {:.0f} degrees at most: level ones would have ceilings of "
+        "{:.1f} mm, and {} bridges {:g} mm; up to {} {:.1f} they can lead anywhere",
+        what, 2 * radius, steepest * 180 / std::numbers::pi, width, choice.process.name, roof.bridge(),
+        option, std::floor(10 * roof.bridge() / roof.cosine) / 10));
+  };
+  tell(request.channel_radius, "channels", "--channel-diameter");
+  tell(request.hole_radius, "escape holes", "--hole-diameter");
+}
+
+DrainedSolid carve_within(const PreparedModel& model, const Packing& packing, const DrainagePlan& plan,
+                          double& tolerance, std::optional<std::size_t> max_triangles, Monitor& monitor) {
+  for (int i = 0; i < kMostTries; ++i) {
+    DrainedSolid solid = carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
+    if (!max_triangles || solid.mesh.triangles.size() <= *max_triangles) return solid;
+    tolerance *= kLooser;
+  }
+  throw UsageError(
+      fmt::format("--max-triangles {}: drained voids take more, however coarse they are", *max_triangles),
+      "allow more triangles, or give a larger --min-radius for fewer voids");
+}
+
+Solid as_solid(const DrainedSolid& drained) {
+  Solid solid;
+  solid.mesh = drained.mesh;
+  solid.outer_triangle_count = drained.mesh.triangles.size();
+  solid.outer_vertex_count = drained.mesh.positions.size();
+  return solid;
+}
+
+}  // namespace aerate

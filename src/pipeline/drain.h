@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "core/monitor.h"
+#include "core/packing.h"
+#include "core/solid.h"
+#include "pipeline/drainage_facts.h"
+#include "pipeline/options.h"
+#include "pipeline/prepare.h"
+
+namespace aerate {
+
+// Plans how the voids of a packing drain, and takes those out of it that cannot, with a notice of how many
+// and why. `tolerance` is that of the void surfaces, mm. Throws what plan_drainage throws.
+DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const DrainageRequest& request,
+                            double tolerance, Monitor& monitor);
+
+// What the user should know about channels and escape holes that are wider than the printer bridges, if it
+// limits ceilings.
+void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,
+                        Monitor& monitor);
+
+// Carves what was planned. Where openings take more triangles than were estimated, the tolerance is loosened
+// until they are at most `max_triangles`; it is set to what was used. Throws as carve_drained, and UsageError
+// if there are more at any tolerance.
+DrainedSolid carve_within(const PreparedModel& model, const Packing& packing, const DrainagePlan& plan,
+                          double& tolerance, std::optional<std::size_t> max_triangles, Monitor& monitor);
+
+// The drained model as one surface.
+Solid as_solid(const DrainedSolid& drained);
+
+}  // namespace aerate

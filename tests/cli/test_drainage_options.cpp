@@ -1,0 +1,221 @@
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/cli/job.h"
+#include "tests/support/caught.h"
+
+// Voids that drain, as the program makes and reports them.
+namespace aerate::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kUsage = 2;
+constexpr int kNothingToRemove = 5;
+
+Mesh block_of_50() {
+  return make_box({0, 0, 0}, {50, 40, 40});
+}
+
+Json json_of(std::vector<std::string> command) {
+  command.insert(command.end(), {"--json", "-"});
+  const ProcessResult result = run(command);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+Json origin_of(const Json& report, const std::string& limit) {
+  for (const Json& entry : report.at("process").at("limits"))
+    if (entry.at("limit") == limit) return entry;
+  return {};
+}
+
+void expect_refused(const Job& job, const std::vector<std::string>& arguments, int exit_code,
+                    const std::vector<std::string>& said) {
+  const ProcessResult result = run(job.hollow(job.input("block.stl", block_of_50()), arguments));
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+// What holds for every drained result; then what another program run makes of the file.
+void expect_drained(const Job& job, const Json& report, std::size_t shells_of_model) {
+  const Json& drainage = report.at("drainage");
+  EXPECT_EQ(drainage["sealed_cavities"], 0);
+  EXPECT_GE(drainage["holes"].size(), 2U * drainage["networks"].get<std::size_t>());
+  EXPECT_LE(drainage["pools"]["after_both_percent"].get<double>(), 1.0);
+  EXPECT_GE(report["measured"]["wall_mm"].get<double>(), report["limits"]["wall_mm"].get<double>() - 1e-6);
+  EXPECT_NEAR(report["volume"]["before_mm3"].get<double>() - report["volume"]["after_mm3"].get<double>(),
+              report["volume"]["removed_mm3"].get<double>(), 1e-3);
+  const ProcessResult result = run({AERATE_EXECUTABLE, "inspect", job.output(), "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json input = Json::parse(result.out).at("input");
+  EXPECT_EQ(input["shells"], shells_of_model);
+  EXPECT_TRUE(input["closed"].get<bool>());
+  EXPECT_EQ(input["non_manifold_edges"], report["input"]["non_manifold_edges"]);
+  EXPECT_NEAR(input["signed_volume_mm3"].get<double>(), report["volume"]["after_mm3"].get<double>(),
+              1e-6 * report["volume"]["before_mm3"].get<double>());
+}
+
+TEST(DrainageOptions, ProcessesThatTrapMaterialDrainByThemselves) {
+  for (const char* process : {"sla", "sls", "metal"}) {
+    const Job job;
+    const Json report = json_of(job.hollow(sample("bunny.stl"), {"--process", process}));
+    expect_drained(job, report, 1);
+    EXPECT_EQ(origin_of(report, "channel")["origin"], std::string("default of ") + process);
+    EXPECT_EQ(origin_of(report, "escape-hole")["value"], report["drainage"]["hole_diameter_mm"]);
+    EXPECT_GE(report["voids"]["count"].get<int>(), 30);
+    // Metal prints no wide ceilings: voids have roofs, and wide holes have to be steep.
+    const bool limits_ceilings = std::string(process) == "metal";
+    EXPECT_EQ(contains(report["notices"].dump(), "escape holes of 5 mm lean"), limits_ceilings);
+    EXPECT_EQ(!report["ceilings"].is_null(), limits_ceilings);
+    if (limits_ceilings) EXPECT_LE(report["ceilings"]["widest_mm"].get<double>(), 2 + 0.05);
+  }
+}
+
+TEST(DrainageOptions, FdmDrainsWhenAskedTo) {
+  const Job job;
+  const Json sealed = json_of(job.hollow(job.input("block.stl", block_of_50())));
+  EXPECT_TRUE(sealed["drainage"].is_null());
+  const Json report =
+      json_of(job.hollow(job.folder() / "block.stl", {"--drain", "--channel-diameter", "2", "--hole-diameter",
+                                                      "2.5", "--min-radius", "1.5", "--max-radius", "6"}));
+  expect_drained(job, report, 1);
+  EXPECT_EQ(origin_of(report, "channel")["origin"], "command line");
+  expect_refused(Job(), {"--drain"}, kUsage, {"fdm", "--channel-diameter"});
+}
+
+TEST(DrainageOptions, VoidsStaySealedWhenAskedTo) {
+  const Job job;
+  const Json report =
+      json_of(job.hollow(job.input("block.stl", block_of_50()), {"--process", "sla", "--no-drain"}));
+  EXPECT_TRUE(report["drainage"].is_null());
+  EXPECT_TRUE(contains(report["notices"].dump(), "sealed"));
+  EXPECT_TRUE(origin_of(report, "channel").is_null());
+}
+
+// Modifiers leave the model solid: nothing is trapped, and nothing is opened.
+TEST(DrainageOptions, ModifiersHaveNothingToDrain) {
+  const Job job;
+  const auto command = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all{AERATE_EXECUTABLE,
+                                 "hollow",
+                                 job.input("block.stl", block_of_50()),
+                                 "-o",
+                                 job.outputs() / "out.3mf",
+                                 "--as",
+                                 "modifiers",
+                                 "--process",
+                                 "sla"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  const ProcessResult refused = run(command({"--drain"}));
+  EXPECT_EQ(refused.exit_code, kUsage);
+  EXPECT_TRUE(contains(refused.err, "--as modifiers leaves no voids that --drain could open"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+  const Json report = json_of(command({}));
+  EXPECT_TRUE(report["drainage"].is_null());
+  EXPECT_FALSE(contains(report["notices"].dump(), "sealed"));
+}
+
+TEST(DrainageOptions, HolesOpenWhereAskedAndInPrintOrientation) {
+  const Job job;
+  const Json asked =
+      json_of(job.hollow(job.input("block.stl", block_of_50()),
+                         {"--process", "sla", "--escape-hole", "12,20,0", "--escape-hole", "38,20,40"}));
+  // No others are made, whatever stays; the notice says how much.
+  EXPECT_EQ(asked["drainage"]["sealed_cavities"], 0);
+  EXPECT_GT(asked["drainage"]["pools"]["after_both_percent"].get<double>(), 1);
+  EXPECT_TRUE(contains(asked["notices"].dump(), "cannot run out"));
+  ASSERT_EQ(asked["drainage"]["holes"].size(), 2U);
+  EXPECT_NEAR(asked["drainage"]["holes"][0]["place_mm"][2].get<double>(), 0, 1e-3);
+  EXPECT_NEAR(asked["drainage"]["holes"][1]["place_mm"][2].get<double>(), 40, 1e-3);
+
+  const Json turned = json_of(job.hollow(job.folder() / "block.stl", {"--process", "sla", "--up", "-x"}));
+  expect_drained(job, turned, 1);
+  EXPECT_EQ(turned["process"]["up"]["direction"], "-x");
+  double lowest = 0;
+  for (const Json& hole : turned["drainage"]["holes"])
+    lowest = std::max(lowest, hole["place_mm"][0].get<double>());
+  EXPECT_GT(lowest, 40);
+}
+
+TEST(DrainageOptions, ARemeshedSurfaceIsCutAsWell) {
+  const Job job;
+  const Json report =
+      json_of(job.hollow(job.input("block.stl", block_of_50()), {"--process", "sla", "--surface", "remesh"}));
+  expect_drained(job, report, 1);
+  EXPECT_EQ(report["surface"]["mode"], "remeshed");
+}
+
+TEST(DrainageOptions, StaysWithinTheTrianglesAskedFor) {
+  const Job job;
+  const Json report = json_of(
+      job.hollow(job.input("block.stl", block_of_50()), {"--process", "sla", "--max-triangles", "9000"}));
+  expect_drained(job, report, 1);
+  EXPECT_LE(report["output"]["triangles"].get<int>(), 9000);
+  EXPECT_GT(report["voids"]["tolerance_used_mm"].get<double>(), 0.05);
+}
+
+TEST(DrainageOptions, TheSameBytesForAnyNumberOfThreads) {
+  std::string reference;
+  for (const char* threads : {"1", "2", "8"}) {
+    const Job job;
+    ASSERT_EQ(run(job.hollow(sample("bunny.stl"), {"--process", "sla", "--threads", threads})).exit_code, 0);
+    const std::string bytes = read_bytes(job.output());
+    if (reference.empty()) reference = bytes;
+    EXPECT_TRUE(bytes == reference) << threads << " threads";
+  }
+}
+
+TEST(DrainageOptions, TheReportInWords) {
+  const Job job;
+  const ProcessResult result = run(job.hollow(sample("bunny.stl"), {"--process", "sla"}));
+  for (const char* part : {"channels of 3.5 mm", "escape holes of 3.5 mm", "0 cavities sealed", "holes at (",
+                           "after both", "channel 3.5 mm, escape-hole 3.5 mm (default of sla)"})
+    EXPECT_TRUE(contains(result.out, part));
+}
+
+TEST(DrainageOptions, WrongInput) {
+  const Job job;
+  const std::vector<std::string> sla{"--process", "sla"};
+  const auto refused = [&](std::vector<std::string> arguments, int code,
+                           const std::vector<std::string>& said) {
+    arguments.insert(arguments.begin(), sla.begin(), sla.end());
+    expect_refused(job, arguments, code, said);
+  };
+  refused({"--escape-hole", "12,20,-30"}, kUsage, {"outside the model", "(12.00, 20.00, 0.00) mm"});
+  refused({"--escape-hole", "25,20,20"}, kUsage, {"inside the model, away from its surface"});
+  refused({"--escape-hole", "12,20"}, kUsage, {"--escape-hole", "x,y,z"});
+  refused({"--hole-diameter", "3"}, kUsage, {"narrower than channels of 3.5 mm", "--hole-diameter"});
+  refused({"--channel-diameter", "25", "--hole-diameter", "25"}, kUsage, {"too wide for every void"});
+  refused({"--channel-diameter", "0"}, kUsage, {"--channel-diameter"});
+  refused({"--up", "0,0,0"}, kUsage, {"--up", "no direction"});
+  refused({"--no-drain", "--escape-hole", "12,20,0"}, kUsage,
+          {"--escape-hole is for voids that drain", "--drain"});
+  refused({"--hole-diameter", "18"}, kNothingToRemove, {"18 mm", "--hole-diameter"});
+}
+
+// Real scans: one with a flat base, one with doubled edges and a crack.
+class DrainedScan : public testing::TestWithParam<const char*> {};
+
+TEST_P(DrainedScan, DrainsWithoutANewFlaw) {
+  const std::filesystem::path model = std::filesystem::path(AERATE_SHARED) / "models" / GetParam();
+  if (!std::filesystem::exists(model)) GTEST_SKIP() << model << " is not there";
+  for (const char* process : {"sla", "metal"}) {
+    const Job job;
+    const Json report = json_of(job.hollow(model, {"--process", process}));
+    expect_drained(job, report, report["input"]["shells"].get<std::size_t>());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, DrainedScan, testing::Values("bunny-100mm.stl", "dragon-47k-100mm.stl"));
+
+}  // namespace
+}  // namespace aerate::test

@@ -1,0 +1,348 @@
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include "core/error.h"
+#include "core/roof.h"
+#include "core/segment_distance.h"
+#include "packing/adaptive.h"
+#include "packing/plan_drainage.h"
+#include "packing/pools.h"
+#include "packing/tube_clearance.h"
+#include "packing/tube_through.h"
+#include "tests/support/caught.h"
+#include "tests/support/clearance.h"
+#include "tests/support/shapes.h"
+
+namespace aerate {
+namespace {
+
+using test::contains;
+using test::message_of;
+
+constexpr Vec3d kUp{0, 0, 1};
+
+Sphere ball(Vec3d centre, double radius) {
+  return {centre, radius, SphereKind::adaptive};
+}
+
+TEST(Tubes, RingsLieOnTheBallAndOnTheTube) {
+  const Sphere sphere = ball({1, 2, 3}, 5);
+  const Tube tube{{2, 2, 3.5}, {9, 5, 6}, 1.5};
+  ASSERT_TRUE(meets_all_round(tube, sphere));
+  const TubeFrame frame = frame_of(tube, kUp);
+  EXPECT_NEAR(dot(cross(frame.axis, frame.down), frame.across), 1, 1e-12);
+  for (const TubeEnd end : {TubeEnd::start, TubeEnd::end}) {
+    const std::vector<Vec3d> ring = ring_on_ball(tube, end, sphere, kUp, 24);
+    for (const Vec3d p : ring) {
+      EXPECT_NEAR(length(p - sphere.centre), 5, 1e-9);
+      const Vec3d from_start = p - tube.start;
+      EXPECT_NEAR(length(from_start - frame.axis * dot(from_start, frame.axis)), 1.5, 1e-9);
+      EXPECT_EQ(dot(p - sphere.centre, frame.axis) > 0, end == TubeEnd::start);
+    }
+  }
+  EXPECT_FALSE(meets_all_round({{1, 5, 3}, {9, 5, 3}, 2.5}, sphere));  // its side runs past the ball
+}
+
+TEST(Tubes, HaveEnoughSidesForTheTolerance) {
+  for (const double tolerance : {0.5, 0.05, 0.005}) {
+    const auto sides = static_cast<double>(tube_sides(2, tolerance));
+    EXPECT_LE(2 * (1 - std::cos(std::numbers::pi / sides)), tolerance);
+    EXPECT_GE(sides, 8);
+  }
+}
+
+TEST(Tubes, BetweenBallsHoldAllThatIsOutsideThem) {
+  const Sphere a = ball({0, 0, 0}, 4), b = ball({12, 0, 3}, 5);
+  const auto tube = tube_between(a, b, a.centre, b.centre, 1.5);
+  ASSERT_TRUE(tube.has_value());
+  for (const Vec3d p : ring_on_ball(*tube, TubeEnd::start, a, kUp, 48))
+    EXPECT_GE(dot(p - tube->start, tube->end - tube->start), -1e-9);
+  for (const Vec3d p : ring_on_ball(*tube, TubeEnd::end, b, kUp, 48))
+    EXPECT_LE(dot(p - tube->end, tube->end - tube->start), 1e-9);
+  EXPECT_FALSE(tube_between(a, b, a.centre, b.centre, 3.9).has_value());
+}
+
+TEST(Pools, VolumeBelowAHeight) {
+  const Sphere sphere = ball({7, 8, 9}, 3);
+  const double whole = 36 * std::numbers::pi;
+  EXPECT_EQ(volume_below({}, sphere, kUp, 6), 0);
+  EXPECT_NEAR(volume_below({}, sphere, kUp, 9), whole / 2, 1e-9);
+  EXPECT_NEAR(volume_below({}, sphere, kUp, 12), whole, 1e-9);
+  EXPECT_NEAR(volume_below({}, sphere, kUp, 7), std::numbers::pi * (9 - 1) / 3, 1e-9);  // cap of height 1
+  EXPECT_NEAR(volume_below({}, sphere, -kUp, -10), volume_below({}, sphere, kUp, 8), 1e-9);
+}
+
+TEST(Pools, VolumeOfAVoidWithARoofBelowAHeight) {
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  const Sphere sphere = ball({7, 8, 9}, 3);
+  const double whole = void_volume(roof, 3), top = 9 + roof.top(3);
+  EXPECT_EQ(volume_below(roof, sphere, kUp, 6), 0);
+  EXPECT_NEAR(volume_below(roof, sphere, kUp, 9), 18 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, kUp, top), whole, 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, kUp, 50), whole, 1e-9);
+  // The frustum below the flat top, a millimetre in radius.
+  EXPECT_NEAR(whole - volume_below(roof, sphere, kUp, top - 0.5), std::numbers::pi / 3 * (3.375 - 1), 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, -kUp, -top), 0, 1e-9);
+  EXPECT_NEAR(volume_below(roof, sphere, -kUp, -10), whole - volume_below(roof, sphere, kUp, 10), 1e-9);
+}
+
+TEST(Tubes, OpenBelowRoofsAndLeanNoFurtherThanIsBridged) {
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  const Sphere sphere = ball({0, 0, 0}, 5);
+  const auto at = [](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return Tube{{0, 0, 0}, Vec3d{std::cos(angle), 0, std::sin(angle)} * 9, 1};
+  };
+  // Half as wide as asin(1/5) is 11.5 degrees, and 0.4 mm are 4.6.
+  EXPECT_TRUE(opens_below_roof(at(28), TubeEnd::start, sphere, roof));
+  EXPECT_FALSE(opens_below_roof(at(30), TubeEnd::start, sphere, roof));
+  EXPECT_FALSE(opens_below_roof(at(90), TubeEnd::start, sphere, roof));
+  EXPECT_TRUE(opens_below_roof(at(30), TubeEnd::end, sphere, roof));  // at the far side, below the centre
+  EXPECT_TRUE(opens_below_roof(at(90), TubeEnd::start, sphere, {}));
+  EXPECT_EQ(ceiling_width(at(45.1), roof), 0);
+  EXPECT_NEAR(ceiling_width(at(0), roof), std::sqrt(2.0), 1e-9);
+  EXPECT_TRUE(is_bridged(at(0), roof));
+  EXPECT_FALSE(is_bridged({{0, 0, 0}, {1, 0, 0}, 1.5}, roof));
+  EXPECT_TRUE(is_bridged({{0, 0, 0}, {1, 0, 1}, 1.5}, roof));
+  EXPECT_TRUE(is_bridged({{0, 0, 0}, {1, 0, 0}, 1.5}, {}));
+}
+
+// A ball with a hole to the side and a lower ball behind it: what lies below the hole stays in the first, and
+// all of the second.
+TEST(Pools, OfTwoBallsAndALevelHole) {
+  const std::vector<Sphere> spheres{ball({0, 0, 10}, 4), ball({0, 0, 0}, 4)};
+  DrainagePlan plan;
+  plan.channels.push_back({1, 0, *tube_between(spheres[1], spheres[0], {0, 0, 0}, {0, 0, 10}, 1)});
+  plan.holes.push_back({0, *tube_out_of(spheres[0], {0, 0, 10}, {1, 0, 0}, 6, 1), 0});
+  const SpillHeights spills = spill_heights(spheres, plan, kUp);
+  EXPECT_NEAR(spills.height[0], 9, 1e-9);  // the hole's lower side
+  EXPECT_NEAR(spills.height[1], 9, 1e-9);
+  EXPECT_EQ(spills.towards[1], 0U);
+  EXPECT_EQ(spills.towards[0], kOutside);
+
+  const TrappedPools pools = trapped_pools(spheres, plan);
+  const double tube = std::numbers::pi * length(plan.channels[0].tube.end - plan.channels[0].tube.start);
+  const double whole = 4.0 / 3.0 * std::numbers::pi * 64;
+  EXPECT_NEAR(pools.upright, volume_below({}, spheres[0], kUp, 9) + whole + tube, 0.05);
+  // Upside down the lower ball is above the hole and its channel opens at its lowest point; in the other
+  // stays what is below the hole's other side.
+  EXPECT_NEAR(pools.upside_down, volume_below({}, spheres[0], -kUp, -11), 1e-6);
+  EXPECT_LE(pools.after_both, pools.upside_down + 1e-9);
+  EXPECT_NEAR(pools.total, 2 * whole + tube, 1e-9);
+}
+
+TEST(Pools, NothingStaysAboveAHoleAtTheLowestPoint) {
+  const std::vector<Sphere> spheres{ball({0, 0, 0}, 4), ball({0, 0, 10}, 4)};
+  DrainagePlan plan;
+  plan.channels.push_back({0, 1, *tube_between(spheres[0], spheres[1], {0, 0, 0}, {0, 0, 10}, 1)});
+  plan.holes.push_back({0, *tube_out_of(spheres[0], {0, 0, 0}, {0, 0, -1}, 3, 1), 0});
+  EXPECT_NEAR(trapped_pools(spheres, plan).upright, 0, 1e-9);
+}
+
+TEST(Pools, ABallThatNothingLeadsOutOfStaysFull) {
+  const std::vector<Sphere> spheres{ball({0, 0, 0}, 4), ball({0, 0, 20}, 4)};
+  DrainagePlan plan;
+  plan.holes.push_back({0, *tube_out_of(spheres[0], {0, 0, 0}, {0, 0, -1}, 3, 1), 0});
+  EXPECT_NEAR(trapped_pools(spheres, plan).after_both, 4.0 / 3.0 * std::numbers::pi * 64, 1e-6);
+}
+
+TEST(TubeClearances, ATubeThatComesOutTooObliquelyIsRefused) {
+  const Mesh box = test::make_box({0, 0, 0}, {40, 40, 40});
+  const std::vector<Sphere> spheres{ball({20, 20, 20}, 5)};
+  const PackingLimits limits{.wall = 2, .gap = 1, .min_radius = 1, .max_radius = 5};
+  const TubeClearance clearance(box, spheres, limits, 20, 2);
+  const auto towards = [&](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3d direction{std::cos(angle), 0, -std::sin(angle)};
+    const Vec3d start{20, 20, 12};
+    return Tube{start, start + direction * (12 / std::sin(angle)), 1};
+  };
+  EXPECT_TRUE(clearance.keeps_wall_on_way_out(towards(90), 0.5));
+  EXPECT_TRUE(clearance.keeps_wall_on_way_out(towards(50), 0.5));
+  EXPECT_FALSE(clearance.keeps_wall_on_way_out(towards(29), 0.5));
+  EXPECT_FALSE(clearance.keeps_wall(towards(90)));  // a channel may not come out at all
+  // A place between samples: a thin slot that comes within half the wall of the tube.
+  const Mesh slotted =
+      test::join(box, test::turned_inside_out(test::make_box({22, 19.99F, 6}, {30, 20.01F, 6.02F})));
+  const TubeClearance beside(slotted, spheres, limits, 20, 2);
+  EXPECT_FALSE(beside.keeps_wall_on_way_out(towards(90), 0.5));
+}
+
+class PlanDrainage : public testing::Test {
+ protected:
+  void pack(const Mesh& mesh, const Roof& roof = {}) {
+    mesh_ = mesh;
+    Monitor silent;
+    packing_ = pack_adaptive(mesh_, {.wall = 2, .gap = 1, .min_radius = 2.5, .max_radius = 8, .roof = roof},
+                             {}, silent);
+  }
+  PlannedDrainage plan(const std::vector<Triangle>& outward) const {
+    Monitor silent;
+    return plan_drainage(
+        {mesh_, outward}, packing_, request_,
+        [](const EscapeHole&, std::span<const EscapeHole>) { return true; }, silent);
+  }
+  PlannedDrainage plan() const { return plan(mesh_.triangles); }
+
+  std::vector<Sphere> kept(const PlannedDrainage& planned) const {
+    std::vector<Sphere> spheres;
+    for (const std::uint32_t i : planned.kept) spheres.push_back(packing_.spheres[i]);
+    return spheres;
+  }
+
+  // By brute force: every tube keeps wall and gap, and from each void channels lead to a hole.
+  void expect_sound(const PlannedDrainage& planned) const {
+    const std::vector<Sphere> spheres = kept(planned);
+    std::vector<std::uint32_t> reached;
+    for (const EscapeHole& hole : planned.plan.holes) {
+      EXPECT_TRUE(meets_all_round(hole.tube, spheres[hole.from]));
+      EXPECT_TRUE(opens_below_roof(hole.tube, TubeEnd::start, spheres[hole.from], packing_.limits.roof));
+      EXPECT_TRUE(is_bridged(hole.tube, packing_.limits.roof));
+      EXPECT_NEAR(test::distance_to_surface(mesh_, hole.tube.end), 0, 1e-3);
+      reached.push_back(hole.from);
+    }
+    for (const Channel& c : planned.plan.channels) {
+      EXPECT_TRUE(meets_all_round(c.tube, spheres[c.from]));
+      EXPECT_TRUE(meets_all_round(c.tube, spheres[c.to]));
+      EXPECT_TRUE(opens_below_roof(c.tube, TubeEnd::start, spheres[c.from], packing_.limits.roof));
+      EXPECT_TRUE(opens_below_roof(c.tube, TubeEnd::end, spheres[c.to], packing_.limits.roof));
+      EXPECT_TRUE(is_bridged(c.tube, packing_.limits.roof));
+      const Segment axis{c.tube.start, c.tube.end};
+      for (const Triangle& t : mesh_.triangles)
+        EXPECT_GE(distance_to_facet(axis, test::facet_of(mesh_, t)), c.tube.radius + 2 - 1e-9);
+      for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+        if (i != c.from && i != c.to) {
+          EXPECT_GE(distance_to_void(axis, packing_.limits.roof, spheres[i]), c.tube.radius + 1 - 1e-7);
+        }
+      }
+    }
+    std::set<std::uint32_t> known(reached.begin(), reached.end());
+    while (!reached.empty()) {
+      const std::uint32_t at = reached.back();
+      reached.pop_back();
+      for (const Channel& c : planned.plan.channels) {
+        const bool leads = c.from == at || c.to == at;
+        const std::uint32_t other = c.from == at ? c.to : c.from;
+        if (leads && known.insert(other).second) reached.push_back(other);
+      }
+    }
+    EXPECT_EQ(known.size(), spheres.size());
+    EXPECT_EQ(planned.kept.size() + planned.dropped.count(), packing_.spheres.size());
+    // Where two holes were asked for, no more are made for what they leave.
+    if (request_.escape_holes.size() < 2) {
+      EXPECT_LE(planned.plan.pools.after_both, 0.01 * planned.plan.pools.total + 1e-9);
+    }
+  }
+
+  Mesh mesh_;
+  Packing packing_;
+  DrainageRequest request_{.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}};
+};
+
+TEST_F(PlanDrainage, JoinsTheVoidsOfABlockAndOpensItLowAndHigh) {
+  pack(test::make_box({0, 0, 0}, {50, 40, 40}));
+  const PlannedDrainage planned = plan();
+  expect_sound(planned);
+  EXPECT_GE(planned.kept.size(), packing_.spheres.size() * 8 / 10);
+  EXPECT_EQ(planned.plan.channels.size(), planned.kept.size() - planned.plan.network_count);
+  const auto [low, high] = std::minmax_element(
+      planned.plan.holes.begin(), planned.plan.holes.end(),
+      [](const EscapeHole& a, const EscapeHole& b) { return a.tube.end.z < b.tube.end.z; });
+  ASSERT_GE(planned.plan.holes.size(), 2U);
+  EXPECT_LT(low->tube.end.z, 10);
+  EXPECT_GT(high->tube.end.z, 25);
+}
+
+TEST_F(PlanDrainage, FollowsThePrintOrientation) {
+  pack(test::make_box({0, 0, 0}, {50, 40, 40}));
+  packing_.limits.roof.up = {-1, 0, 0};
+  const PlannedDrainage planned = plan();
+  expect_sound(planned);
+  double low = 0, high = 50;
+  for (const EscapeHole& hole : planned.plan.holes) {
+    low = std::max(low, hole.tube.end.x);
+    high = std::min(high, hole.tube.end.x);
+  }
+  EXPECT_GT(low, 40);
+  EXPECT_LT(high, 20);
+}
+
+TEST_F(PlanDrainage, KeepsClearOfRoofs) {
+  request_.channel_radius = 1.4;
+  for (const Vec3d up : {kUp, Vec3d{0, 0.6, -0.8}}) {
+    pack(test::make_box({0, 0, 0}, {50, 40, 40}), make_roof({.degrees = 45, .bridge = 2, .up = up}));
+    const PlannedDrainage planned = plan();
+    expect_sound(planned);
+    EXPECT_GE(planned.kept.size(), packing_.spheres.size() * 7 / 10);
+  }
+}
+
+TEST_F(PlanDrainage, OpensWhereItIsAsked) {
+  pack(test::make_box({0, 0, 0}, {50, 40, 40}));
+  request_.escape_holes = {{12, 20, 0}, {38, 20, 40.5}};
+  const PlannedDrainage planned = plan();
+  expect_sound(planned);
+  ASSERT_EQ(planned.plan.holes.size(), 2U);
+  EXPECT_LT(length(planned.plan.holes[0].tube.end - Vec3d{12, 20, 0}), 1.75);
+  EXPECT_LT(length(planned.plan.holes[1].tube.end - Vec3d{38, 20, 40}), 1.75);
+}
+
+TEST_F(PlanDrainage, DoesNotOpenIntoACavityOfTheModel) {
+  // The space below the voids of the upper half is a cavity, which is nearer than the outside.
+  const Mesh outside = test::make_box({0, 0, 0}, {40, 40, 60});
+  pack(test::join(outside, test::turned_inside_out(test::make_box({3, 3, 3}, {37, 37, 30}))));
+  const PlannedDrainage planned = plan(outside.triangles);
+  expect_sound(planned);
+  for (const EscapeHole& hole : planned.plan.holes)
+    EXPECT_LT(test::distance_to_surface(outside, hole.tube.end), 1e-3);
+}
+
+TEST_F(PlanDrainage, VoidsTooNarrowAreCounted) {
+  pack(test::make_box({0, 0, 0}, {50, 40, 40}));
+  packing_.spheres.push_back(ball({1.2, 1.2, 1.2}, 0.5));
+  const PlannedDrainage planned = plan();
+  EXPECT_EQ(planned.dropped.narrow, 1U);
+  EXPECT_GE(planned.dropped.volume, 4.0 / 3.0 * std::numbers::pi * 0.125);
+}
+
+TEST_F(PlanDrainage, WhatCannotBeIsRefusedWithWhatToDo) {
+  pack(test::make_box({0, 0, 0}, {50, 40, 40}));
+  const auto refused = [&] { return message_of<UsageError>([&] { plan(); }); };
+  request_.escape_holes = {{12, 20, -30}};
+  EXPECT_TRUE(contains(refused(), "outside the model"));
+  EXPECT_TRUE(contains(refused(), "(12.00, 20.00, 0.00) mm"));
+  request_.escape_holes = {{12, 20, 12}};
+  EXPECT_TRUE(contains(refused(), "inside the model, away from its surface"));
+  request_.escape_holes = {{12, 20, 0}};
+  request_.hole_radius = 7.9;  // as wide as the voids
+  EXPECT_TRUE(contains(refused(), "no straight hole leads from"));
+  request_.escape_holes = {};
+  request_.channel_radius = 9;
+  request_.hole_radius = 9;
+  EXPECT_TRUE(contains(refused(), "too wide for every void"));
+}
+
+TEST_F(PlanDrainage, WhereNoHoleCanBeCutNothingIsMade) {
+  pack(test::make_box({0, 0, 0}, {50, 40, 40}));
+  Monitor silent;
+  EXPECT_THROW(plan_drainage(
+                   {mesh_, mesh_.triangles}, packing_, request_,
+                   [](const EscapeHole&, std::span<const EscapeHole>) { return false; }, silent),
+               NothingToRemoveError);
+}
+
+TEST_F(PlanDrainage, IsTheSameEveryTime) {
+  pack(test::make_box({0, 0, 0}, {50, 40, 40}));
+  const PlannedDrainage a = plan(), b = plan();
+  EXPECT_EQ(a.kept, b.kept);
+  ASSERT_EQ(a.plan.channels.size(), b.plan.channels.size());
+  for (std::size_t i = 0; i < a.plan.channels.size(); ++i)
+    EXPECT_EQ(a.plan.channels[i].tube.start, b.plan.channels[i].tube.start);
+}
+
+}  // namespace
+}  // namespace aerate

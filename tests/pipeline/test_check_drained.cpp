@@ -1,0 +1,237 @@
+#include <algorithm>
+#include <functional>
+#include <gtest/gtest.h>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "mesh/weld.h"
+#include "packing/adaptive.h"
+#include "packing/plan_drainage.h"
+#include "pipeline/check_drained.h"
+#include "pipeline/drain.h"
+#include "pipeline/solid_file.h"
+#include "printing/carve_drained.h"
+#include "tests/support/caught.h"
+#include "tests/support/files.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temporary_folder.h"
+
+namespace aerate {
+namespace {
+
+using test::contains;
+using test::message_of;
+
+// As a file would give it back: vertices welded and numbered in order of first use.
+Mesh as_read_back(const Mesh& mesh) {
+  std::vector<Vec3f> corners;
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t vertex : t) corners.push_back(mesh.positions[vertex]);
+  }
+  return weld(corners);
+}
+
+// A block that drains; a test damages the result, or what is expected of it, and looks whether that is found.
+class CheckDrained : public testing::Test {
+ protected:
+  explicit CheckDrained(Mesh model = test::make_box({0, 0, 0}, {40, 30, 30})) : model_(std::move(model)) {
+    Monitor silent;
+    Packing packing = pack_adaptive(model_, limits_, {}, silent);
+    const std::vector<Triangle> outward = outward_shells(model_, inspect(model_));
+    const FacetsNear facets(model_);
+    const PlannedDrainage planned = plan_drainage(
+        {model_, outward}, packing, {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}},
+        [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
+          std::vector<WayOut> before;
+          for (const EscapeHole& other : others) before.push_back({other.tube, packing.spheres[other.from]});
+          return can_cut(facets, {hole.tube, packing.spheres[hole.from]}, before, limits_.roof, tolerance_) &&
+                 !is_crossed_near(facets, hole.tube);
+        },
+        silent);
+    for (const std::uint32_t i : planned.kept) balls_.push_back(packing.spheres[i]);
+    plan_ = planned.plan;
+    solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  }
+
+  OutputFacts check() {
+    Monitor silent;
+    return check_drained(as_read_back(solid_.mesh),
+                         {.solid = solid_,
+                          .model = model_,
+                          .inspection = inspect(model_),
+                          .balls = balls_,
+                          .plan = plan_,
+                          .limits = limits_,
+                          .tolerance = tolerance_},
+                         drainage_, silent);
+  }
+  void expect_found(const std::string& said) {
+    EXPECT_TRUE(contains(message_of<FailureError>([&] { check(); }), said));
+  }
+
+  PackingLimits limits_{.wall = 2, .gap = 1, .min_radius = 2.5, .max_radius = 6};
+  double tolerance_ = 0.05;
+  Mesh model_;
+  std::vector<Sphere> balls_;
+  DrainagePlan plan_;
+  DrainedSolid solid_;
+  DrainageFacts drainage_;
+};
+
+TEST_F(CheckDrained, MeasuresASoundResult) {
+  const OutputFacts facts = check();
+  EXPECT_EQ(facts.void_count, balls_.size());
+  EXPECT_EQ(drainage_.sealed_cavities, 0U);
+  EXPECT_EQ(drainage_.cavities_of_model, 0U);
+  EXPECT_GE(drainage_.channel_wall, 2 - 0.025);
+  EXPECT_GE(facts.clearances.wall, 2);
+  EXPECT_GE(facts.clearances.gap.value(), 1 - 1e-6);
+  EXPECT_NEAR(facts.volume_before, 36000, 1e-6);
+  EXPECT_NEAR(facts.volume_after, signed_volume(solid_.mesh), 1e-3);
+  EXPECT_LE(facts.void_deviation, tolerance_);
+  EXPECT_GT(drainage_.cut_triangles, 0U);
+}
+
+TEST_F(CheckDrained, AMovedTriangleOfTheOuterSurface) {
+  solid_.mesh.positions[solid_.mesh.triangles[0][0]].x += 0.01F;
+  expect_found("is not the one of the model");
+}
+
+TEST_F(CheckDrained, AnOpenEdge) {
+  solid_.mesh.triangles.pop_back();
+  --solid_.hole_ends.back();
+  expect_found("open edges");
+}
+
+TEST_F(CheckDrained, AMovedVoid) {
+  balls_[0].centre.x += 0.5;
+  expect_found("void 0: it ");
+}
+
+TEST_F(CheckDrained, ATubeThatIsTooWide) {
+  plan_.holes[0].tube.radius -= 0.2;
+  expect_found("escape hole 0: it reaches");
+}
+
+TEST_F(CheckDrained, AWallThatIsTooThin) {
+  limits_.wall = 2.2;
+  expect_found("the limit 2.2 mm");
+}
+
+TEST_F(CheckDrained, AGapThatIsTooThin) {
+  limits_.gap = 1.2;
+  expect_found("1.2 mm");
+}
+
+TEST_F(CheckDrained, CutsAwayFromHoles) {
+  // Every hole as if it came out elsewhere, outside the model.
+  for (EscapeHole& hole : plan_.holes) {
+    hole.tube.start = hole.tube.start + Vec3d{0, 0, 200};
+    hole.tube.end = hole.tube.end + Vec3d{0, 0, 200};
+  }
+  expect_found("was cut away from every escape hole");
+}
+
+// The same voids without their channels and holes: shells of their own.
+TEST_F(CheckDrained, SealedVoids) {
+  Monitor silent;
+  plan_.channels.clear();
+  plan_.holes.clear();
+  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  expect_found(std::to_string(balls_.size()) + " cavities are sealed");
+}
+
+TEST_F(CheckDrained, AVoidThatNoChannelJoins) {
+  Monitor silent;
+  const std::uint32_t last = plan_.channels.back().to;
+  std::erase_if(plan_.channels, [&](const Channel& c) { return c.from == last || c.to == last; });
+  std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return hole.from == last; });
+  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  expect_found("sealed");
+}
+
+TEST_F(CheckDrained, AChannelThatWasForgotten) {
+  const DrainagePlan whole = plan_;
+  plan_.channels.pop_back();
+  Monitor silent;
+  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  plan_ = whole;
+  expect_found("were planned");
+}
+
+TEST_F(CheckDrained, MoreIsRemovedThanPlanned) {
+  for (Sphere& ball : balls_) ball.radius += 0.02;
+  tolerance_ = 0.2;
+  EXPECT_NO_THROW(check());  // coarser by that, but within what is expected
+  tolerance_ = 0.001;
+  expect_found("inside its planned shape");
+}
+
+// A plan that its result does not follow: the job fails, and what was there before is left alone.
+TEST_F(CheckDrained, WhatFailsIsNeverWritten) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const std::string& name) {
+    Monitor silent;
+    AnnouncedFile pending(folder.path() / name, silent);
+    const auto check_read = [&](const Mesh& written) {
+      check_drained(written,
+                    {.solid = solid_,
+                     .model = model_,
+                     .inspection = inspect(model_),
+                     .balls = balls_,
+                     .plan = plan_,
+                     .limits = limits_,
+                     .tolerance = tolerance_},
+                    drainage_, silent);
+    };
+    write_checked(as_solid(solid_), pending, {}, check_read, silent);
+  };
+  write("sound.stl");
+  const auto sound = test::read_bytes(folder.path() / "sound.stl");
+  EXPECT_EQ(sound.size(), 84 + 50 * solid_.mesh.triangles.size());
+
+  // A channel that leads elsewhere than planned.
+  plan_.channels.front().tube.end = plan_.channels.front().tube.end + Vec3d{0, 0, 1};
+  EXPECT_THROW(write("broken.stl"), FailureError);
+  EXPECT_THROW(write("sound.stl"), FailureError);
+  EXPECT_EQ(test::entries_of(folder.path()), std::vector<std::string>{"sound.stl"});
+  EXPECT_EQ(test::read_bytes(folder.path() / "sound.stl"), sound);
+}
+
+// A model with a cavity of its own beside the voids.
+class CheckDrainedWithCavity : public CheckDrained {
+ protected:
+  CheckDrainedWithCavity()
+      : CheckDrained(test::join(test::make_box({0, 0, 0}, {40, 30, 60}),
+                                test::turned_inside_out(test::make_box({3, 3, 3}, {37, 27, 30})))) {}
+};
+
+TEST_F(CheckDrainedWithCavity, KeepsItAsItIsAndCountsIt) {
+  check();
+  EXPECT_EQ(drainage_.cavities_of_model, 1U);
+  EXPECT_EQ(drainage_.sealed_cavities, 0U);
+}
+
+TEST_F(CheckDrainedWithCavity, AHoleIntoTheCavityIsSealed) {
+  Monitor silent;
+  // The network opened downwards into the cavity alone.
+  Packing packing;
+  packing.spheres = balls_;
+  packing.limits = limits_;
+  const PlannedDrainage planned = plan_drainage(
+      {model_, {}}, packing,
+      {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {{20, 15, 30}, {12, 15, 30}}},
+      [](const EscapeHole&, std::span<const EscapeHole>) { return true; }, silent);
+  std::vector<Sphere> kept;
+  for (const std::uint32_t i : planned.kept) kept.push_back(balls_[i]);
+  balls_ = kept;
+  plan_ = planned.plan;
+  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  expect_found("sealed");
+}
+
+}  // namespace
+}  // namespace aerate

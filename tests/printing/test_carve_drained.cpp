@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <optional>
+#include <tbb/global_control.h>
+#include <vector>
+
+#include "core/roof.h"
+#include "printing/carve_drained.h"
+#include "printing/cut_surface.h"
+#include "tests/support/shapes.h"
+#include "tests/support/shells.h"
+
+namespace aerate {
+namespace {
+
+constexpr Vec3d kUp{0, 0, 1};
+constexpr double kTolerance = 0.05;
+
+Sphere ball(Vec3d centre, double radius) {
+  return {centre, radius, SphereKind::adaptive};
+}
+
+// Two voids in a block, a channel that is off both centres, a hole below and one to the side.
+class CarveDrained : public testing::Test {
+ protected:
+  CarveDrained() {
+    plan_.channels.push_back({0, 1, between({12, 15, 12}, {26, 15, 15}, 2)});
+    plan_.holes.push_back({0, out_of({12, 14, 10}, {0, 0, -1}, 2), 0});
+    plan_.holes.push_back({1, out_of({28, 15, 14}, {1, 0, 0.2}, 2), 0});
+    plan_.network_count = 1;
+  }
+
+  // The parts of the lines outside the voids, generously: they begin inside the surface's own curve.
+  Tube between(Vec3d from, Vec3d to, double radius) const {
+    const Vec3d axis = (to - from) * (1 / length(to - from));
+    return {from + axis * leaves(spheres_[0], from, axis, radius),
+            to - axis * leaves(spheres_[1], to, axis * -1, radius), radius};
+  }
+  Tube out_of(Vec3d from, Vec3d direction, double radius) const {
+    const Vec3d axis = direction * (1 / length(direction));
+    const Sphere& sphere = axis.z < 0 ? spheres_[0] : spheres_[1];
+    const double to_surface = axis.z < 0 ? from.z / -axis.z : (40 - from.x) / axis.x;
+    return {from + axis * leaves(sphere, from, axis, radius), from + axis * to_surface, radius};
+  }
+  // Least way from a point inside a ball to where a tube's lines leave it.
+  static double leaves(const Sphere& sphere, Vec3d from, Vec3d axis, double radius) {
+    const Vec3d to_centre = sphere.centre - from;
+    const double along = dot(to_centre, axis);
+    const double off = length(to_centre - axis * along) + radius;
+    return along + std::sqrt(sphere.radius * sphere.radius - off * off);
+  }
+
+  DrainedSolid carve(double tolerance = kTolerance) const {
+    Monitor silent;
+    return carve_drained(model_, spheres_, plan_, {.tolerance = tolerance}, silent);
+  }
+
+  Mesh model_ = test::make_box({0, 0, 0}, {40, 30, 30});
+  std::vector<Sphere> spheres_{ball({12, 15, 12}, 7), ball({28, 15, 14}, 6)};
+  DrainagePlan plan_;
+};
+
+TEST_F(CarveDrained, TheResultIsOneClosedSurfaceOfTheRightGenus) {
+  const DrainedSolid solid = carve();
+  ASSERT_TRUE(test::is_closed_manifold(solid.mesh));
+  // A block with one tunnel through both voids: a torus.
+  EXPECT_EQ(test::euler_characteristic(solid.mesh), 2 + 2 * 2 - 3 * 2);
+  EXPECT_GT(signed_volume(solid.mesh), 0);
+}
+
+TEST_F(CarveDrained, WhatIsRemovedIsWhatWasPlanned) {
+  const auto ball_volume = [](double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; };
+  const double removed = signed_volume(model_) - signed_volume(carve(0.005).mesh);
+  double tubes = 0;
+  for (const Channel& c : plan_.channels) tubes += length(c.tube.end - c.tube.start);
+  for (const EscapeHole& hole : plan_.holes) tubes += length(hole.tube.end - hole.tube.start);
+  const double balls = ball_volume(7) + ball_volume(6);
+  EXPECT_LT(removed, balls + tubes * std::numbers::pi * 4);
+  // The tubes overlap the balls by their caps alone, each less than a slice as thick as it sags.
+  EXPECT_GT(removed, balls * 0.995 + (tubes - 4 * 0.4) * std::numbers::pi * 4 * 0.99);
+}
+
+TEST_F(CarveDrained, TheOuterSurfaceIsCutAtTheHolesAlone) {
+  const DrainedSolid solid = carve();
+  std::size_t kept = 0;
+  for (std::uint32_t i = 0; i < model_.triangles.size(); ++i) {
+    if (std::binary_search(solid.cut_triangles.begin(), solid.cut_triangles.end(), i)) continue;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      EXPECT_EQ(solid.mesh.positions[solid.mesh.triangles[kept][corner]],
+                model_.positions[model_.triangles[i][corner]]);
+    ++kept;
+  }
+  EXPECT_EQ(kept, solid.kept_triangle_count);
+  EXPECT_LE(solid.cut_triangles.size(), 4U);
+  EXPECT_GE(solid.cut_triangles.size(), 2U);
+  // What is left of the two faces has their area less that of the holes.
+  double area = 0;
+  for (std::size_t i = 0; i < solid.outer_triangle_count; ++i) {
+    const Triangle& t = solid.mesh.triangles[i];
+    const Vec3d a = to_double(solid.mesh.positions[t[0]]);
+    area +=
+        length(cross(to_double(solid.mesh.positions[t[1]]) - a, to_double(solid.mesh.positions[t[2]]) - a)) /
+        2;
+  }
+  const double slope = std::sqrt(1.04);  // the hole to the side is an ellipse
+  EXPECT_NEAR(area, 2 * (40 * 30 + 40 * 30 + 30 * 30) - std::numbers::pi * 4 * (1 + slope), 0.4);
+}
+
+TEST_F(CarveDrained, EveryPartStaysInsideItsShapeByTheToleranceAtMost) {
+  for (const double tolerance : {0.2, 0.05, 0.01}) {
+    const DrainedSolid solid = carve(tolerance);
+    std::size_t first = solid.outer_triangle_count;
+    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+      const Sphere& sphere = spheres_[i];
+      for (; first < solid.void_ends[i]; ++first) {
+        const Triangle& t = solid.mesh.triangles[first];
+        const Vec3d a = to_double(solid.mesh.positions[t[0]]) - sphere.centre;
+        const Vec3d b = to_double(solid.mesh.positions[t[1]]) - sphere.centre;
+        const Vec3d c = to_double(solid.mesh.positions[t[2]]) - sphere.centre;
+        const Vec3d normal = cross(b - a, c - a);
+        EXPECT_LE(std::max({length(a), length(b), length(c)}), sphere.radius);
+        EXPECT_GE(-dot(normal, a) / length(normal), sphere.radius - tolerance);
+      }
+    }
+  }
+}
+
+// Both voids with roofs: they end in a flat top as wide as the bridge, and tubes open below.
+TEST_F(CarveDrained, VoidsWithRoofs) {
+  plan_.roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  plan_.holes[1].tube = out_of({28, 15, 12}, {1, 0, 0}, 2);
+  for (const Channel& c : plan_.channels) {
+    ASSERT_TRUE(opens_below_roof(c.tube, TubeEnd::start, spheres_[0], plan_.roof));
+    ASSERT_TRUE(opens_below_roof(c.tube, TubeEnd::end, spheres_[1], plan_.roof));
+  }
+  for (const double tolerance : {0.2, 0.05, 0.02}) {
+    const DrainedSolid solid = carve(tolerance);
+    ASSERT_TRUE(test::is_closed_manifold(solid.mesh));
+    EXPECT_EQ(test::euler_characteristic(solid.mesh), 2 + 2 * 2 - 3 * 2);
+    std::size_t first = solid.outer_triangle_count;
+    for (std::size_t i = 0; i < spheres_.size(); ++i) {
+      double top = 0;
+      for (; first < solid.void_ends[i]; ++first) {
+        for (const std::uint32_t v : solid.mesh.triangles[first]) {
+          const Vec3d p = to_double(solid.mesh.positions[v]);
+          EXPECT_LE(least_radius_holding(plan_.roof, spheres_[i].centre, p), spheres_[i].radius);
+          top = std::max(top, p.z - spheres_[i].centre.z);
+        }
+      }
+      EXPECT_NEAR(top, plan_.roof.top(spheres_[i].radius), tolerance);
+    }
+  }
+  const double removed = signed_volume(model_) - signed_volume(carve(0.02).mesh);
+  plan_.roof = {};
+  const double without = signed_volume(model_) - signed_volume(carve(0.02).mesh);
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  EXPECT_NEAR(removed - without,
+              void_volume(roof, 7) + void_volume(roof, 6) - void_volume({}, 7) - void_volume({}, 6), 4);
+}
+
+TEST_F(CarveDrained, ASideThatATubeMeetsAtAGrazingAngle) {
+  // As far off the centre as may be.
+  const double off = 0.999 * kWidestTubeShare * 7 - 2;
+  plan_.holes[0].tube = out_of({12, 15 - off, 10}, {0, 0, -1}, 2);
+  ASSERT_TRUE(meets_all_round(plan_.holes[0].tube, spheres_[0]));
+  for (const double tolerance : {0.2, 0.05, 0.01})
+    EXPECT_TRUE(test::is_closed_manifold(carve(tolerance).mesh));
+}
+
+TEST_F(CarveDrained, TheSameBytesForAnyNumberOfThreads) {
+  const DrainedSolid reference = carve();
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const DrainedSolid solid = carve();
+    EXPECT_EQ(solid.mesh.triangles, reference.mesh.triangles);
+    EXPECT_EQ(solid.mesh.positions, reference.mesh.positions);
+  }
+}
+
+TEST_F(CarveDrained, AHoleIsNotCutWhereTheSurfaceIsNoSinglePiece) {
+  const WayOut way{plan_.holes[0].tube, spheres_[0]};
+  EXPECT_TRUE(can_cut(FacetsNear(model_), way, {}, Roof{}, kTolerance));
+  // Another surface a little below the first.
+  const Mesh doubled = test::join(model_, test::make_box({0, 0, -3}, {40, 30, -2}));
+  EXPECT_FALSE(can_cut(FacetsNear(doubled), way, {}, Roof{}, kTolerance));
+  // It stops short of the surface.
+  const Mesh larger = test::make_box({0, 0, -20}, {40, 30, 30});
+  EXPECT_FALSE(can_cut(FacetsNear(larger), way, {}, Roof{}, kTolerance));
+}
+
+// Both holes come out of one triangle: the second meets what the first has left of it.
+TEST_F(CarveDrained, TwoHolesThroughOneTriangle) {
+  plan_.holes[1].tube = {{27, 15, 8.9}, {27, 15, 0}, 2};
+  const std::vector<WayOut> first{{plan_.holes[0].tube, spheres_[0]}};
+  ASSERT_TRUE(can_cut(FacetsNear(model_), {plan_.holes[1].tube, spheres_[1]}, first, Roof{}, kTolerance));
+  const DrainedSolid solid = carve();
+  EXPECT_TRUE(test::is_closed_manifold(solid.mesh));
+  EXPECT_LE(solid.cut_triangles.size(), 2U);
+  // A hole where there is one already.
+  EXPECT_FALSE(can_cut(FacetsNear(model_), first[0], first, Roof{}, kTolerance));
+}
+
+}  // namespace
+}  // namespace aerate
