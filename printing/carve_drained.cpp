@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
+#include "core/top_opening.h"
 #include "printing/ball_template.h"
 #include "printing/cut_surface.h"
 #include "printing/open_ball.h"
@@ -51,41 +52,72 @@ std::size_t sides_of(const Tube& tube, double tolerance) {
   return tube_sides(tube.radius, tolerance / 8);
 }
 
-Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof, double tolerance) {
+Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof, std::size_t sides) {
   Opening opening{shrunk(tube), end, {}};
-  opening.ring = ring_on_ball(opening.tube, end, shrunk(roof, ball), roof.up, sides_of(tube, tolerance));
+  opening.ring = ring_on_ball(opening.tube, end, shrunk(roof, ball), roof.up, sides);
   // Counter-clockwise seen from outside the ball.
   if (end == TubeEnd::end) std::reverse(opening.ring.begin(), opening.ring.end());
   return opening;
 }
 
-// The circle at which the roof of a void begins, as if an upright tube came out of its ball there. Its edges
-// are short enough for the openings beside it, of which `thinnest` is the least radius.
-Opening shoulder_of(const Sphere& ball, const Roof& roof, double thinnest, double tolerance) {
-  const Sphere smaller = shrunk(roof, ball);
-  const Tube tube{smaller.centre, smaller.centre + roof.up, smaller.radius * roof.cosine};
-  std::size_t sides = tube_sides(tube.radius, tolerance / 8);
-  while (2 * tube.radius * std::sin(std::numbers::pi / static_cast<double>(sides)) >
+// Of the circle at which the roof of a void begins. Its edges are short enough for the openings beside it, of
+// which `thinnest` is the least radius.
+std::size_t shoulder_sides(const Sphere& ball, const Roof& roof, double thinnest, double tolerance) {
+  const double radius = ball.radius * roof.cosine;
+  std::size_t sides = tube_sides(radius, tolerance / 8);
+  while (2 * radius * std::sin(std::numbers::pi / static_cast<double>(sides)) >
          kEdgePerSpacing * kOpeningSpacingShare * thinnest)
     sides += 2;
+  return sides;
+}
+
+// That circle, as if an upright tube came out of the ball there.
+Opening shoulder_of(const Sphere& ball, const Roof& roof, std::size_t sides) {
+  const Sphere smaller = shrunk(roof, ball);
+  const Tube tube{smaller.centre, smaller.centre + roof.up, smaller.radius * roof.cosine};
   return {tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, smaller, roof.up, sides)};
 }
 
-// Puts the roof on a ball that is open along its shoulder, where the ring begins at vertex `first`.
-void close_above(OpenedBall& opened, std::size_t first, std::size_t count, const Sphere& ball,
-                 const Roof& roof, double tolerance) {
-  const RoofTop top = roof_top_of(roof, ball, tolerance);
-  const std::size_t rim = opened.positions.size();
-  const double scale = 1 - void_shrinkage(roof, ball);
-  const Vec3d middle = ball.centre + roof.up * (roof.top(ball.radius) * scale);
+// A ball with its openings, that of its roof last, and where its vertices begin in the result.
+struct Part {
+  std::vector<Opening> openings;
+  std::optional<Tube> out_of_top;  // instead of the roof's flat top
+  OpenedBall surface;
+  std::size_t top_ring = 0;  // the first vertex of that tube's rim
+  std::uint32_t first_vertex = 0;
+
+  std::size_t ring_vertex_count() const {
+    std::size_t count = 0;
+    for (const Opening& opening : openings) count += opening.ring.size();
+    return count;
+  }
+};
+
+// Puts the roof on a ball that is open along its shoulder.
+void close_above(Part& part, const Sphere& ball, const Roof& roof, double tolerance) {
+  OpenedBall& opened = part.surface;
+  const std::size_t count = part.openings.back().ring.size();
+  const std::size_t first = part.ring_vertex_count() - count;
+  const std::size_t rim = part.top_ring = opened.positions.size();
+  const Sphere smaller = shrunk(roof, ball);
+  const double tube_radius = part.out_of_top ? shrunk(*part.out_of_top).radius : 0;
+  const RoofTop top = part.out_of_top ? RoofTop::flat : roof_top_of(roof, ball, tolerance);
+  const double scale = smaller.radius / ball.radius;
+  const double width = part.out_of_top ? tube_radius : roof.flat_radius() * scale;
+  const double height =
+      part.out_of_top ? top_opening_height(tube_radius, smaller.radius, roof) : roof.top(ball.radius) * scale;
+  const Vec3d middle = ball.centre + roof.up * height;
   if (top == RoofTop::apex) opened.positions.push_back(middle);
   for (std::size_t i = 0; i < count && top == RoofTop::flat; ++i) {
     const Vec3d offset = opened.positions[first + i] - ball.centre;
     const Vec3d aside = offset - roof.up * dot(offset, roof.up);
-    opened.positions.push_back(middle + aside * (roof.flat_radius() / (ball.radius * roof.cosine)));
+    opened.positions.push_back(middle + aside * (width / (smaller.radius * roof.cosine)));
   }
   const std::vector<Triangle> added = roof_triangles(top, first, count, rim);
-  opened.triangles.insert(opened.triangles.end(), added.begin(), added.end());
+  // Those of a flat top come last.
+  const std::size_t of_cone = part.out_of_top ? 2 * count : added.size();
+  opened.triangles.insert(opened.triangles.end(), added.begin(),
+                          added.begin() + static_cast<std::ptrdiff_t>(of_cone));
 }
 
 CuttingPrism prism_of(const Tube& tube, const Opening& opening) {
@@ -120,38 +152,27 @@ void apply(const SurfaceCut& cut, Mesh& mesh) {
   mesh.positions.insert(mesh.positions.end(), cut.new_positions.begin(), cut.new_positions.end());
 }
 
-// A ball with its openings, that of its roof last, and where its vertices begin in the result.
-struct Part {
-  std::vector<Opening> openings;
-  OpenedBall surface;
-  std::uint32_t first_vertex = 0;
-
-  std::size_t ring_vertex_count() const {
-    std::size_t count = 0;
-    for (const Opening& opening : openings) count += opening.ring.size();
-    return count;
-  }
-};
-
 // Where the ring of an opening begins among the vertices of its ball.
 struct RingPlace {
   std::uint32_t ball = 0;
   std::uint32_t first = 0;
 };
+constexpr std::uint32_t kOnTop = std::numeric_limits<std::uint32_t>::max();  // the rim of `out_of_top`
 
 class DrainedCarver {
  public:
   DrainedCarver(std::span<const Sphere> balls, const DrainagePlan& plan, const CarveOptions& options,
                 Monitor& monitor)
       : balls_(balls), plan_(plan), tolerance_(options.tolerance), monitor_(monitor), parts_(balls.size()) {
-    for (const Channel& channel : plan.channels) {
-      channel_rings_.push_back({add_opening(channel.from, channel.tube, TubeEnd::start),
-                                add_opening(channel.to, channel.tube, TubeEnd::end)});
-    }
+    for (const Channel& channel : plan.channels) thinnest_ = std::min(thinnest_, channel.tube.radius);
+    for (const EscapeHole& hole : plan.holes) thinnest_ = std::min(thinnest_, hole.tube.radius);
+    for (const Channel& channel : plan.channels) add_channel_openings(channel);
     for (const EscapeHole& hole : plan.holes)
-      hole_rings_.push_back(add_opening(hole.from, hole.tube, TubeEnd::start));
+      hole_rings_.push_back(
+          add_opening(hole.from, hole.tube, TubeEnd::start, sides_of(hole.tube, tolerance_)));
     for (std::size_t i = 0; i < balls.size(); ++i) {
-      if (plan.roof.shapes(balls[i].radius)) add_shoulder(parts_[i], balls[i]);
+      if (plan.roof.shapes(balls[i].radius))
+        parts_[i].openings.push_back(shoulder_of(balls[i], plan.roof, sides_above(i)));
     }
   }
 
@@ -172,17 +193,32 @@ class DrainedCarver {
   }
 
  private:
-  RingPlace add_opening(std::uint32_t ball, const Tube& tube, TubeEnd end) {
+  RingPlace add_opening(std::uint32_t ball, const Tube& tube, TubeEnd end, std::size_t sides) {
     Part& part = parts_[ball];
     const RingPlace place{ball, static_cast<std::uint32_t>(part.ring_vertex_count())};
-    part.openings.push_back(opening_of(tube, end, balls_[ball], plan_.roof, tolerance_));
+    part.openings.push_back(opening_of(tube, end, balls_[ball], plan_.roof, sides));
     return place;
   }
 
-  void add_shoulder(Part& part, const Sphere& ball) {
-    double thinnest = ball.radius;
-    for (const Opening& opening : part.openings) thinnest = std::min(thinnest, opening.tube.radius);
-    part.openings.push_back(shoulder_of(ball, plan_.roof, thinnest, tolerance_));
+  void add_channel_openings(const Channel& channel) {
+    const Tube& tube = channel.tube;
+    std::size_t sides = sides_of(tube, tolerance_);
+    RingPlace start{channel.from, kOnTop};
+    if (comes_out_of_top(tube, balls_[channel.from], plan_.roof)) {
+      parts_[channel.from].out_of_top = tube;
+      sides = sides_above(channel.from);
+    } else {
+      start = add_opening(channel.from, tube, TubeEnd::start, sides);
+    }
+    channel_rings_.push_back(
+        {start, add_opening(channel.to, tube, TubeEnd::end, sides), static_cast<std::uint32_t>(sides)});
+  }
+
+  // Sides of a roof's cone, and of the tube that comes out of it.
+  std::size_t sides_above(std::size_t ball) const {
+    const std::size_t sides = shoulder_sides(balls_[ball], plan_.roof, thinnest_, tolerance_);
+    const auto& tube = parts_[ball].out_of_top;
+    return tube ? std::max(sides, sides_of(*tube, tolerance_)) : sides;
   }
 
   // Opens a ball and puts its roof on. False if that takes a finer template.
@@ -190,11 +226,8 @@ class DrainedCarver {
     auto opened = open_ball(shrunk(plan_.roof, ball), directions, part.openings);
     if (!opened || opened->nearest < ball.radius - tolerance_ + void_rounding_margin(plan_.roof, ball))
       return false;
-    if (plan_.roof.shapes(ball.radius)) {
-      const std::size_t count = part.openings.back().ring.size();
-      close_above(*opened, part.ring_vertex_count() - count, count, ball, plan_.roof, tolerance_);
-    }
     part.surface = std::move(*opened);
+    if (plan_.roof.shapes(ball.radius)) close_above(part, ball, plan_.roof, tolerance_);
     return true;
   }
 
@@ -266,9 +299,10 @@ class DrainedCarver {
   void add(Triangle t) { solid_.mesh.triangles.push_back(t); }
 
   void add_channel(std::size_t index) {
-    const auto [start, end] = channel_rings_[index];
-    const auto sides = static_cast<std::uint32_t>(sides_of(plan_.channels[index].tube, tolerance_));
-    const std::uint32_t a = parts_[start.ball].first_vertex + start.first;
+    const auto [start, end, sides] = channel_rings_[index];
+    const Part& from = parts_[start.ball];
+    const std::uint32_t a =
+        from.first_vertex + (start.first == kOnTop ? static_cast<std::uint32_t>(from.top_ring) : start.first);
     const std::uint32_t b = parts_[end.ball].first_vertex + end.first;
     for (std::uint32_t i = 0; i < sides; ++i) {
       const std::uint32_t next = (i + 1) % sides;
@@ -312,6 +346,7 @@ class DrainedCarver {
 
   struct RingPair {
     RingPlace start, end;
+    std::uint32_t sides;
   };
   struct HoleSides {
     std::vector<Triangle> triangles;
@@ -322,6 +357,7 @@ class DrainedCarver {
   const DrainagePlan& plan_;
   double tolerance_;
   Monitor& monitor_;
+  double thinnest_ = std::numeric_limits<double>::infinity();  // radius of a tube
   std::vector<Part> parts_;
   std::vector<RingPair> channel_rings_;
   std::vector<RingPlace> hole_rings_;
@@ -334,7 +370,8 @@ class DrainedCarver {
 bool can_cut(const FacetsNear& outer, const WayOut& way, std::span<const WayOut> others, const Roof& roof,
              double tolerance) {
   const auto prism = [&](const WayOut& out) {
-    return prism_of(out.tube, opening_of(out.tube, TubeEnd::start, out.ball, roof, tolerance));
+    return prism_of(out.tube,
+                    opening_of(out.tube, TubeEnd::start, out.ball, roof, sides_of(out.tube, tolerance)));
   };
   const CuttingPrism own = prism(way);
   const std::vector<std::uint32_t> near = outer.find(axis_of(own), reach_of(own));

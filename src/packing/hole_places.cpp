@@ -203,7 +203,12 @@ HolePlaces::PlacesByBall& HolePlaces::places_of(Vec3d down) {
 void HolePlaces::look_at(std::span<const std::uint32_t> balls, Vec3d down) {
   PlacesByBall& places = places_of(down);
   places.resize(spheres_.size());
-  const std::vector<Vec3d> directions = directions_about(down);
+  std::vector<Vec3d> directions = directions_about(down);
+  // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
+  if (limits_.roof.limits_ceilings() && dot(down, limits_.roof.up) > 0) {
+    const std::vector<Vec3d> back = directions_about(-down);
+    directions.insert(directions.end(), back.begin(), back.end());
+  }
   tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
     std::optional<std::vector<Place>>& own = places[balls[i]];
     if (own) return;

@@ -15,6 +15,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/top_opening.h"
 #include "packing/hole_places.h"
 #include "packing/pools.h"
 #include "packing/tube_clearance.h"
@@ -51,6 +52,10 @@ struct Attachment {
 };
 constexpr std::array<Attachment, 7> kAttachments{
     {{0.7, -0.7}, {0.35, -0.35}, {0, 0}, {0, -0.7}, {0.7, 0}, {-0.35, -0.7}, {-0.7, -0.7}}};
+
+// After those: straight up out of the top of a roof.
+constexpr std::size_t kOutOfTop = kAttachments.size();
+constexpr std::size_t kWays = kAttachments.size() + 1;
 
 // Channels that leave below a roof are moved so many times at most, since that turns them.
 constexpr int kMostShifts = 4;
@@ -122,11 +127,12 @@ class Planner {
   };
   using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
   using UncutPlace = std::tuple<std::uint32_t, double, double, double>;
-  static constexpr std::size_t kExisting = kAttachments.size();
+  static constexpr std::size_t kExisting = kWays;
 
   double largest_radius() const;
   double volume_of(const Members& members) const;
   Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const;
+  std::optional<Channel> channel_out_of_top(std::uint32_t lower, std::uint32_t upper) const;
   std::optional<Channel> channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const;
   bool is_free(const Channel& channel, std::size_t attachment);
   std::vector<Members> networks();
@@ -193,12 +199,26 @@ Vec3d Planner::below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const {
   return inside;
 }
 
+std::optional<Channel> Planner::channel_out_of_top(std::uint32_t lower, std::uint32_t upper) const {
+  const Sphere& ball = spheres_[lower];
+  const double radius = request_.channel_radius;
+  if (!has_top_for(radius, ball, roof_)) return std::nullopt;
+  const Vec3d start = ball.centre + roof_.up * top_opening_height(radius, ball.radius, roof_);
+  const auto tube = tube_into(spheres_[upper], start, roof_.up, radius);
+  if (!tube || length(tube->end - tube->start) > longest_ ||
+      !opens_below_roof(*tube, TubeEnd::end, spheres_[upper], roof_)) {
+    return std::nullopt;
+  }
+  return Channel{lower, upper, *tube};
+}
+
 std::optional<Channel> Planner::channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const {
   const Vec3d up = roof_.up;
   const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
   if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
   const Sphere& lower = spheres_[a];
   const Sphere& upper = spheres_[b];
+  if (attachment == kOutOfTop) return channel_out_of_top(a, b);
   const Attachment where = kAttachments[attachment];
   Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
   const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
@@ -218,8 +238,7 @@ std::optional<Channel> Planner::channel(std::uint32_t a, std::uint32_t b, std::s
 // Whether the channel keeps clear of everything but other channels; remembered.
 bool Planner::is_free(const Channel& channel, std::size_t attachment) {
   const std::uint64_t key =
-      (static_cast<std::uint64_t>(channel.from) * spheres_.size() + channel.to) * kAttachments.size() +
-      attachment;
+      (static_cast<std::uint64_t>(channel.from) * spheres_.size() + channel.to) * kWays + attachment;
   const auto known = free_.find(key);
   if (known != free_.end()) return known->second;
   const bool is_free = clearance_.keeps_gap_to_voids(channel.tube, channel.from, channel.to) &&
@@ -258,7 +277,7 @@ std::vector<Planner::Members> Planner::networks() {
   for (const Pair& pair : pairs) {
     if (sets.root(pair.a) == sets.root(pair.b)) continue;
     monitor_.check_interrupted();
-    for (std::size_t i = 0; i < kAttachments.size(); ++i) {
+    for (std::size_t i = 0; i < kWays; ++i) {
       const auto found = channel(pair.a, pair.b, i);
       if (found && is_free(*found, i)) {
         sets.join(pair.a, pair.b);
@@ -457,7 +476,7 @@ void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d u
   }
   for (const std::uint32_t to : clearance_.neighbours(from)) {
     if (network_of_[to] != network_of_[from]) continue;
-    for (std::size_t i = 0; i < kAttachments.size(); ++i) {
+    for (std::size_t i = 0; i < kWays; ++i) {
       const auto c = channel(from, to, i);
       if (!c) continue;
       const double sill = sill_of(c->tube, spheres_[c->from], spheres_[c->to], up);

@@ -45,14 +45,14 @@ struct DrainableModel {
 // Joins voids by straight channels and opens them to the outside.
 //
 // Voids are the nodes of a graph; its edges are channels that keep the wall from the surface, and the gap
-// from other voids and channels; where voids have roofs, they open below these, and lean no further than the
-// printer bridges their ceilings. Print orientation is that of `packing.limits.roof`. Each connected set of
-// voids that is large enough gets an escape hole for print orientation, low and where it shows little, and
-// one for the model upside down. From the low hole a flood in order of height (pools.h) makes the spanning
-// tree: each void is joined so that its liquid has to rise least to run out. While more than a hundredth of
-// the voids' volume stays after both orientations, the largest pools get holes of their own (unless both
-// holes were asked for), then channels beside the tree, and at last branches of which too much would stay
-// full are left out.
+// from other voids and channels; where voids have roofs, they open below these or come straight out of their
+// tops, and lean no further than the printer bridges their ceilings. Print orientation is that of
+// `packing.limits.roof`. Each connected set of voids that is large enough gets an escape hole for print
+// orientation, low and where it shows little, and one for the model upside down. From the low hole a flood in
+// order of height (pools.h) makes the spanning tree: each void is joined so that its liquid has to rise least
+// to run out. While more than a hundredth of the voids' volume stays after both orientations, the largest
+// pools get holes of their own (unless both holes were asked for), then channels beside the tree, and at last
+// branches of which too much would stay full are left out.
 //
 // Deterministic. Throws UsageError if no void is wide enough, if an escape hole was asked for away from the
 // surface or where no tube reaches a void; NothingToRemoveError if no network can be opened;

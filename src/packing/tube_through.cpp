@@ -46,6 +46,14 @@ std::optional<Tube> tube_between(const Sphere& from, const Sphere& to, Vec3d ins
   return Tube{inside_from + axis * start, inside_from + axis * end, radius};
 }
 
+std::optional<Tube> tube_into(const Sphere& ball, Vec3d start, Vec3d direction, double radius) {
+  const Tube line{start, start + direction, radius};
+  if (!meets_all_round(line, ball)) return std::nullopt;
+  const Extent rim = rim_extent(line, TubeEnd::end, ball);
+  if (rim.least <= 0) return std::nullopt;
+  return Tube{start, start + direction * rim.greatest, radius};
+}
+
 std::optional<Tube> tube_out_of(const Sphere& ball, Vec3d inside, Vec3d direction, double length,
                                 double radius) {
   const Tube line{inside, inside + direction, radius};

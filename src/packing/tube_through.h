@@ -11,6 +11,10 @@ namespace aerate {
 std::optional<Tube> tube_between(const Sphere& from, const Sphere& to, Vec3d inside_from, Vec3d inside_to,
                                  double radius);
 
+// The tube from a point outside a ball along a direction (unit) that leads into it, cut to what is outside
+// the ball. nullopt if it does not meet the ball all round, or meets it behind the point.
+std::optional<Tube> tube_into(const Sphere& ball, Vec3d start, Vec3d direction, double radius);
+
 // The tube from a ball along a direction (unit) through a point inside it, from where it has left the ball.
 // Its end is `length` beyond its start. nullopt if it does not meet the ball all round.
 std::optional<Tube> tube_out_of(const Sphere& ball, Vec3d inside, Vec3d direction, double length,

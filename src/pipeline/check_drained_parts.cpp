@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/segment_distance.h"
+#include "core/top_opening.h"
 #include "pipeline/check_failure.h"
 #include "pipeline/planned_shape.h"
 #include "pipeline/polled_loop.h"
@@ -140,7 +141,9 @@ DrainedParts check_drained_parts(const Mesh& mesh, const DrainedSolid& solid, st
         flaw_of_tube(mesh, part_of(mesh, solid.channel_ends, i, first_channel), plan.channels[i].tube);
     if (flaw) fail_check("channel {}: {}", i, *flaw);
     const Channel& channel = plan.channels[i];
-    if (!opens_below_roof(channel.tube, TubeEnd::start, balls[channel.from], plan.roof) ||
+    const Sphere& from = balls[channel.from];
+    const bool is_out_of_top = comes_out_of_top(channel.tube, from, plan.roof);
+    if ((!is_out_of_top && !opens_below_roof(channel.tube, TubeEnd::start, from, plan.roof)) ||
         !opens_below_roof(channel.tube, TubeEnd::end, balls[channel.to], plan.roof))
       fail_check("channel {}: it opens into a roof", i);
   }

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/roof.h"
 #include "mesh/weld.h"
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
+#include "packing/tube_through.h"
 #include "pipeline/check_drained.h"
 #include "pipeline/drain.h"
 #include "pipeline/solid_file.h"
@@ -37,23 +39,42 @@ Mesh as_read_back(const Mesh& mesh) {
 // A block that drains; a test damages the result, or what is expected of it, and looks whether that is found.
 class CheckDrained : public testing::Test {
  protected:
-  explicit CheckDrained(Mesh model = test::make_box({0, 0, 0}, {40, 30, 30})) : model_(std::move(model)) {
+  struct Sound {
+    Mesh model;
+    std::vector<Sphere> balls;
+    DrainagePlan plan;
+    DrainedSolid solid;
+  };
+
+  CheckDrained() : CheckDrained(sound_block()) {}
+  explicit CheckDrained(const Sound& sound)
+      : model_(sound.model), balls_(sound.balls), plan_(sound.plan), solid_(sound.solid) {}
+
+  // Made once for all tests.
+  static const Sound& sound_block() {
+    static const Sound sound = drain(test::make_box({0, 0, 0}, {40, 30, 30}));
+    return sound;
+  }
+
+  static Sound drain(Mesh model) {
+    Sound sound{std::move(model), {}, {}, {}};
     Monitor silent;
-    Packing packing = pack_adaptive(model_, limits_, {}, silent);
-    const std::vector<Triangle> outward = outward_shells(model_, inspect(model_));
-    const FacetsNear facets(model_);
+    Packing packing = pack_adaptive(sound.model, kLimits, {}, silent);
+    const std::vector<Triangle> outward = outward_shells(sound.model, inspect(sound.model));
+    const FacetsNear facets(sound.model);
     const PlannedDrainage planned = plan_drainage(
-        {model_, outward}, packing, {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}},
+        {sound.model, outward}, packing, {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}},
         [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
           std::vector<WayOut> before;
           for (const EscapeHole& other : others) before.push_back({other.tube, packing.spheres[other.from]});
-          return can_cut(facets, {hole.tube, packing.spheres[hole.from]}, before, limits_.roof, tolerance_) &&
+          return can_cut(facets, {hole.tube, packing.spheres[hole.from]}, before, kLimits.roof, kTolerance) &&
                  !is_crossed_near(facets, hole.tube);
         },
         silent);
-    for (const std::uint32_t i : planned.kept) balls_.push_back(packing.spheres[i]);
-    plan_ = planned.plan;
-    solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+    for (const std::uint32_t i : planned.kept) sound.balls.push_back(packing.spheres[i]);
+    sound.plan = planned.plan;
+    sound.solid = carve_drained(sound.model, sound.balls, sound.plan, {.tolerance = kTolerance}, silent);
+    return sound;
   }
 
   OutputFacts check() {
@@ -72,8 +93,11 @@ class CheckDrained : public testing::Test {
     EXPECT_TRUE(contains(message_of<FailureError>([&] { check(); }), said));
   }
 
-  PackingLimits limits_{.wall = 2, .gap = 1, .min_radius = 2.5, .max_radius = 6};
-  double tolerance_ = 0.05;
+  static constexpr PackingLimits kLimits{.wall = 2, .gap = 1, .min_radius = 2.5, .max_radius = 6};
+  static constexpr double kTolerance = 0.05;
+
+  PackingLimits limits_ = kLimits;
+  double tolerance_ = kTolerance;
   Mesh model_;
   std::vector<Sphere> balls_;
   DrainagePlan plan_;
@@ -170,6 +194,42 @@ TEST_F(CheckDrained, MoreIsRemovedThanPlanned) {
   expect_found("inside its planned shape");
 }
 
+// Two voids with roofs, joined by a level channel, each with a hole below it.
+class CheckDrainedRoofs : public CheckDrained {
+ protected:
+  void carve(double channel_radius) {
+    limits_.roof = make_roof({.degrees = 45, .bridge = 2, .up = {0, 0, 1}});
+    balls_ = {{{12, 15, 11}, 6, SphereKind::adaptive}, {{28, 15, 11}, 6, SphereKind::adaptive}};
+    plan_ = {};
+    plan_.roof = limits_.roof;
+    plan_.network_count = 1;
+    const Vec3d a = balls_[0].centre, b = balls_[1].centre;
+    plan_.channels.push_back({0, 1, tube_between(balls_[0], balls_[1], a, b, channel_radius).value()});
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      Tube tube = tube_out_of(balls_[i], balls_[i].centre, {0, 0, -1}, 1, 2.5).value();
+      tube.end.z = 0;
+      plan_.holes.push_back({i, tube, 0});
+    }
+    Monitor silent;
+    solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  }
+};
+
+TEST_F(CheckDrainedRoofs, CeilingsAreMeasured) {
+  carve(1.4);
+  const OutputFacts facts = check();
+  EXPECT_EQ(facts.roof_count, 2U);
+  ASSERT_TRUE(facts.ceilings.has_value());
+  EXPECT_EQ(facts.ceilings->count, 3U);  // two flat tops and the channel's
+  EXPECT_NEAR(facts.ceilings->widest, 2, tolerance_);
+  EXPECT_EQ(drainage_.sealed_cavities, 0U);
+}
+
+TEST_F(CheckDrainedRoofs, AChannelThatIsWiderThanTheBridge) {
+  carve(2);
+  expect_found("a ceiling is 2.");
+}
+
 // A plan that its result does not follow: the job fails, and what was there before is left alone.
 TEST_F(CheckDrained, WhatFailsIsNeverWritten) {
   const test::TemporaryFolder folder;
@@ -205,8 +265,8 @@ TEST_F(CheckDrained, WhatFailsIsNeverWritten) {
 class CheckDrainedWithCavity : public CheckDrained {
  protected:
   CheckDrainedWithCavity()
-      : CheckDrained(test::join(test::make_box({0, 0, 0}, {40, 30, 60}),
-                                test::turned_inside_out(test::make_box({3, 3, 3}, {37, 27, 30})))) {}
+      : CheckDrained(drain(test::join(test::make_box({0, 0, 0}, {40, 30, 60}),
+                                      test::turned_inside_out(test::make_box({3, 3, 3}, {37, 27, 30}))))) {}
 };
 
 TEST_F(CheckDrainedWithCavity, KeepsItAsItIsAndCountsIt) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/roof.h"
+#include "core/top_opening.h"
 #include "printing/carve_drained.h"
 #include "printing/cut_surface.h"
 #include "tests/support/shapes.h"
@@ -158,6 +159,26 @@ TEST_F(CarveDrained, VoidsWithRoofs) {
   const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
   EXPECT_NEAR(removed - without,
               void_volume(roof, 7) + void_volume(roof, 6) - void_volume({}, 7) - void_volume({}, 6), 4);
+}
+
+// A channel that takes the place of the lower void's flat top.
+TEST_F(CarveDrained, AChannelOutOfARoof) {
+  plan_.roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  model_ = test::make_box({0, 0, 0}, {30, 30, 50});
+  spheres_ = {ball({15, 15, 12}, 6), ball({16, 14, 31}, 5)};
+  const Vec3d start = spheres_[0].centre + kUp * top_opening_height(1.4, 6, plan_.roof);
+  plan_.channels = {{0, 1, {start, {15, 15, 26.5}, 1.4}}};
+  ASSERT_TRUE(comes_out_of_top(plan_.channels[0].tube, spheres_[0], plan_.roof));
+  plan_.holes = {{0, {{15, 15, 6.5}, {15, 15, 0}, 2}, 0}, {1, {{20, 14, 30}, {30, 14, 30}, 1.5}, 0}};
+  for (const double tolerance : {0.2, 0.05}) {
+    const DrainedSolid solid = carve(tolerance);
+    ASSERT_TRUE(test::is_closed_manifold(solid.mesh));
+    EXPECT_EQ(test::euler_characteristic(solid.mesh), 2 + 2 * 2 - 3 * 2);
+    // The cone ends at the channel, which no triangle closes.
+    for (std::size_t i = solid.outer_triangle_count; i < solid.void_ends[0]; ++i) {
+      for (const std::uint32_t v : solid.mesh.triangles[i]) EXPECT_LE(solid.mesh.positions[v].z, start.z);
+    }
+  }
 }
 
 TEST_F(CarveDrained, ASideThatATubeMeetsAtAGrazingAngle) {
