@@ -5,16 +5,19 @@
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
+#include <exception>
 #include <fmt/format.h>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
 
+#include "bench/figures.h"
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "packing/adaptive.h"
@@ -24,7 +27,9 @@
 // How time and memory grow: with triangles (a wavy ball of 10 mm, up to ten million of them) and with spheres
 // (in such a ball of 20,000 triangles, up to five million), both packings; and what the index of triangles
 // takes. Every row is a process of its own, so that its peak of memory is its own, and every sphere is
-// verified. Usage: bench_scaling [TRIANGLES [SPHERES]], the most of each, in millions.
+// verified.
+// Usage: bench_scaling [TRIANGLES [SPHERES [ADAPTIVE_SPHERES]]] [--table FILE] [--summary FILE], the most of
+// each, in millions. Exit status 1 if a sphere breaks a limit.
 
 namespace aerate::bench {
 namespace {
@@ -135,30 +140,68 @@ double exponent(const std::vector<Row>& rows, double Row::*x, double Row::*y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-void print_series(const std::string& title, const std::vector<Case>& cases, double Row::*size,
-                  const char* per) {
-  fmt::print(
-      "\n{}\n\n| triangles | spheres | density % | seconds | processor s | us / {} | peak MB | bytes / {} | "
-      "index MB | corrected |\n|---|---|---|---|---|---|---|---|---|---|\n",
-      title, per, per);
-  std::vector<Row> rows;
-  for (const Case& c : cases) {
-    const Row row = rows.emplace_back(measure_apart(c.triangles, c.pack));
-    fmt::print("| {} | {} | {:.2f} | {:.3f} | {:.3f} | {:.2f} | {:.0f} | {:.0f} | {:.1f} | {} |\n",
-               row.triangles, row.spheres, row.density, row.seconds, row.processor_seconds,
-               1e6 * row.processor_seconds / row.*size, row.peak_bytes / 1e6, row.peak_bytes / row.*size,
-               row.index_bytes / 1e6, row.corrected);
-    std::fflush(stdout);
-  }
-  fmt::print("\nprocessor time grows with {}s ^ {:.2f}, the process's memory ^ {:.2f}\n", per,
-             exponent(rows, size, &Row::processor_seconds), exponent(rows, size, &Row::peak_bytes));
+// All series, and what is to be told of them.
+struct Growth {
+  std::string text;     // Markdown
+  std::string summary;  // rows of README's table
+  double corrected = 0;
+};
+
+struct Series {
+  std::string title;
+  double Row::*size;  // what grows
+  std::string unit;   // of it
+};
+
+std::vector<std::string> cells_of(const Row& row, double Row::*size) {
+  return {grouped(row.triangles),
+          grouped(row.spheres),
+          fmt::format("{:.2f}", row.density),
+          fmt::format("{:.3f}", row.seconds),
+          fmt::format("{:.3f}", row.processor_seconds),
+          fmt::format("{:.2f}", 1e6 * row.processor_seconds / row.*size),
+          fmt::format("{:.0f}", row.peak_bytes / 1e6),
+          fmt::format("{:.0f}", row.peak_bytes / row.*size),
+          fmt::format("{:.1f}", row.index_bytes / 1e6),
+          fmt::format("{:.0f}", row.corrected)};
+}
+
+// Bytes of the index for a reference of a cell to a triangle, beside the 8 of each cell; 0 if there is none.
+double bytes_per_reference(const std::vector<Row>& rows) {
   double most = 0;
   for (const Row& row : rows) {
     if (row.index_references > 0) {
       most = std::max(most, (row.index_bytes - 8 * row.index_cells) / row.index_references);
     }
   }
-  if (most > 0) fmt::print("index: 8 bytes a cell, and at most {:.2f} a reference\n", most);
+  return most;
+}
+
+void measure_series(const Series& series, const std::vector<Case>& cases, Growth& growth) {
+  const std::string title = fmt::format("**{}**\n\n", series.title);
+  fmt::print("\n{}", title);
+  Table table({"triangles", "spheres", "density %", "seconds", "processor s",
+               fmt::format("us / {}", series.unit), "peak MB", fmt::format("bytes / {}", series.unit),
+               "index MB", "corrected"});
+  std::vector<Row> rows;
+  for (const Case& c : cases) {
+    const Row row = rows.emplace_back(measure_apart(c.triangles, c.pack));
+    table.add(cells_of(row, series.size));
+    growth.corrected += row.corrected;
+  }
+  const double time = exponent(rows, series.size, &Row::processor_seconds);
+  std::string remarks = fmt::format("Processor time grows with {}s ^ {:.2f}, the process's memory ^ {:.2f}.",
+                                    series.unit, time, exponent(rows, series.size, &Row::peak_bytes));
+  if (const double bytes = bytes_per_reference(rows); bytes > 0) {
+    remarks += fmt::format(" Index: 8 bytes a cell, and at most {:.2f} a reference.", bytes);
+  }
+  fmt::print("\n{}\n", remarks);
+  growth.text +=
+      fmt::format("{}{}{}\n{}\n", growth.text.empty() ? "" : "\n", title, table.markdown(), remarks);
+  growth.summary += fmt::format(
+      "| {}, up to {:.2g} million {}s | {:.1f} s, {:.0f} MB; processor time grows with {}s ^ {:.2f} |\n",
+      series.title.substr(0, series.title.find(',')), rows.back().*series.size / 1e6, series.unit,
+      rows.back().seconds, rows.back().peak_bytes / 1e6, series.unit, time);
 }
 
 Pack hexagonal(double radius) {
@@ -190,31 +233,43 @@ std::vector<Case> with_spheres(double most, double spheres_at_scale_1, PackOf pa
   return cases;
 }
 
-void run(double triangles, double spheres) {
-  print_series("Hexagonal, R = 1 mm: more triangles", with_triangles(triangles, hexagonal(1)),
-               &Row::triangles, "triangle");
-  print_series("Adaptive, r >= 0.4 mm: more triangles", with_triangles(triangles, adaptive(0.4, kUnlimited)),
-               &Row::triangles, "triangle");
+Growth measure_growth(double triangles, double spheres, double adaptive_spheres) {
+  Growth growth;
+  measure_series({"Hexagonal, R = 1 mm: more triangles", &Row::triangles, "triangle"},
+                 with_triangles(triangles, hexagonal(1)), growth);
+  measure_series({"Adaptive, r >= 0.4 mm: more triangles", &Row::triangles, "triangle"},
+                 with_triangles(triangles, adaptive(0.4, kUnlimited)), growth);
   // So many spheres there are, about, at scale 1.
-  print_series("Hexagonal, 20,000 triangles: more spheres",
-               with_spheres(spheres, 5e6, [](double scale) { return hexagonal(0.0925 * scale); }),
-               &Row::spheres, "sphere");
-  print_series(
-      "Adaptive, 20,000 triangles, radii of 1 : 4.4: more spheres, to a tenth of that",
-      with_spheres(spheres / 10, 0.5e6, [](double scale) { return adaptive(0.045 * scale, 0.2 * scale); }),
-      &Row::spheres, "sphere");
+  measure_series({"Hexagonal, 20,000 triangles: more spheres", &Row::spheres, "sphere"},
+                 with_spheres(spheres, 5e6, [](double scale) { return hexagonal(0.0925 * scale); }), growth);
+  measure_series({"Adaptive, 20,000 triangles, radii of 1 : 4.4: more spheres", &Row::spheres, "sphere"},
+                 with_spheres(adaptive_spheres, 0.25e6,
+                              [](double scale) { return adaptive(0.045 * scale, 0.2 * scale); }),
+                 growth);
+  return growth;
+}
+
+int run(const FigureArguments& arguments) {
+  std::array<double, 3> millions{10, 5, 2.5};
+  for (std::size_t i = 0; i < arguments.others.size(); ++i) {
+    millions[i] = std::atof(arguments.others[i].c_str());
+    if (!(millions[i] > 0)) throw std::invalid_argument("numbers of triangles and spheres, in millions");
+  }
+  const Growth growth = measure_growth(1e6 * millions[0], 1e6 * millions[1], 1e6 * millions[2]);
+  if (growth.corrected > 0) {
+    fmt::print(stderr, "{} spheres broke a limit\n", growth.corrected);
+    return 1;
+  }
+  write_figures(arguments, growth.text, growth.summary);
+  return 0;
 }
 
 }  // namespace
 }  // namespace aerate::bench
 
-int main(int argc, char** argv) {
-  const double triangles = argc > 1 ? std::atof(argv[1]) : 10;
-  const double spheres = argc > 2 ? std::atof(argv[2]) : 5;
-  if (!(triangles > 0) || !(spheres > 0)) {
-    fmt::print(stderr, "usage: bench_scaling [TRIANGLES [SPHERES]], in millions\n");
-    return 2;
-  }
-  aerate::bench::run(1e6 * triangles, 1e6 * spheres);
-  return 0;
+int main(int argc, char** argv) try {
+  return aerate::bench::run(aerate::bench::parse_figure_arguments(argc, argv, 3));
+} catch (const std::exception& error) {
+  fmt::print(stderr, "bench_scaling: {}\n", error.what());
+  return 2;
 }

@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <fmt/format.h>
 #include <numbers>
 #include <random>
 #include <string>
 
 #include "bench/containers.h"
+#include "bench/figures.h"
 #include "core/monitor.h"
 #include "kernels/hexagonal.h"
 #include "kernels/point_triangle.h"
@@ -15,6 +18,8 @@
 #include "packing/verify.h"
 
 // The paper's Tables 2 and 3 beside ours: no wall, no gap, its radii.
+// Usage: paper_table [MODELS] [--table FILE] [--summary FILE]. Exit status 1 if a sphere breaks a limit, or
+// if a model is missing of which figures were to be written.
 
 namespace aerate::bench {
 namespace {
@@ -74,54 +79,109 @@ double dense_matrix_bytes(const Mesh& mesh, double radius, std::size_t places) {
   return boxes * (static_cast<double>(mesh.triangles.size()) + static_cast<double>(places));
 }
 
-void print_row(const Container& container, const Mesh& mesh) {
+struct Figures {
+  double difference = 0;  // of density to the paper's, points
+  double seconds = 0;
+  double brute_force_seconds = 0;
+  std::size_t corrected = 0;  // spheres that verification dropped or shrank: none, unless there is a bug
+};
+
+Figures add_row(Table& table, const Container& container, const Mesh& mesh) {
   const PackingLimits limits{0, 0, 0, container.max_radius};
   Monitor monitor;
   Packing packing;
-  double seconds = 1e300;
+  Figures figures;
+  figures.seconds = 1e300;
   for (int run = 0; run < 3; ++run) {
     const auto start = std::chrono::steady_clock::now();
-    packing = pack_hexagonal(mesh, limits, monitor);
-    seconds = std::min(seconds, seconds_since(start));
+    packing = pack_hexagonal(mesh, limits, monitor, {DeviceRequest::Kind::cpu, 0});
+    figures.seconds = std::min(figures.seconds, seconds_since(start));
   }
-  const std::size_t packed = packing.spheres.size();
   packing = verify_packing(mesh, packing);
+  figures.corrected = packing.statistics.dropped_by_verification + packing.statistics.shrunk_by_verification;
   std::size_t kinds[4] = {};
   for (const Sphere& sphere : packing.spheres) ++kinds[static_cast<std::size_t>(sphere.kind)];
   const double volume = container.table_volume.value_or(signed_volume(mesh));
   const double density = 100 * total_volume(packing) / volume;
+  figures.difference = density - container.paper_density;
+  figures.brute_force_seconds = brute_force_seconds(mesh, container.max_radius, places_of(packing));
+  table.add(
+      {container.name, grouped(static_cast<double>(mesh.triangles.size())),
+       fmt::format("{:.2f}", container.paper_density), fmt::format("{:.2f}", density),
+       fmt::format("{:+.2f}", figures.difference),
+       fmt::format("{} / {} / {} / {}", kinds[0], kinds[1], kinds[2], kinds[3]),
+       fmt::format("{}", figures.corrected), fmt::format("{:.3f}", figures.seconds),
+       fmt::format("{:.1f}*", figures.brute_force_seconds),
+       fmt::format("{:.2f}", container.paper_brute_force_seconds),
+       fmt::format("{:.2f}", container.paper_indexed_seconds),
+       fmt::format("{:.2f}", container.paper_best_seconds),
+       fmt::format("{:.0f}", container.paper_best_seconds / figures.seconds),
+       fmt::format("{:.1f}", static_cast<double>(packing.statistics.index_bytes) / 1e6),
+       fmt::format("{:.0f}*", dense_matrix_bytes(mesh, container.max_radius, places_of(packing)) / 1e6)});
+  return figures;
+}
+
+struct Totals {
+  std::size_t containers = 0, missing = 0, corrected = 0;
+  double sum_of_differences = 0, largest_difference = 0;  // absolute, points
+  std::string summary;                                    // of the paper's largest case
+};
+
+void add(Totals& totals, const Container& container, const Figures& figures) {
+  ++totals.containers;
+  totals.corrected += figures.corrected;
+  totals.sum_of_differences += std::abs(figures.difference);
+  totals.largest_difference = std::max(totals.largest_difference, std::abs(figures.difference));
+  if (container.name != "Dragon HT") return;
+  totals.summary = fmt::format(
+      "| the paper's largest case, \"Dragon HT\" (hexagonal, r = {:g}) | {:.2f} s; by brute force {} s "
+      "(one thread, extrapolated); the paper: {} s sequential, {:.0f} s on its best GPU |\n",
+      container.max_radius, figures.seconds, grouped(figures.brute_force_seconds),
+      grouped(container.paper_indexed_seconds), container.paper_best_seconds);
+}
+
+int run(const FigureArguments& arguments) {
+  const std::string models = arguments.others.empty() ? "../shared/models" : arguments.others[0];
   fmt::print(
-      "| {} | {} | {:.2f} | {:.2f} | {:+.2f} | {} / {} / {} / {} | {} | {:.3f} | {:.1f}* | {:.2f} | {:.2f} | "
-      "{:.2f} | {:.0f} | {:.1f} | {:.0f}* |\n",
-      container.name, mesh.triangles.size(), container.paper_density, density,
-      density - container.paper_density, kinds[0], kinds[1], kinds[2], kinds[3],
-      packed - packing.spheres.size(), seconds,
-      brute_force_seconds(mesh, container.max_radius, places_of(packing)),
-      container.paper_brute_force_seconds, container.paper_indexed_seconds, container.paper_best_seconds,
-      container.paper_best_seconds / seconds, static_cast<double>(packing.statistics.index_bytes) / 1e6,
-      dense_matrix_bytes(mesh, container.max_radius, places_of(packing)) / 1e6);
+      "Hexagonal packing of the paper's containers: no wall, no gap, disjoint spheres (the paper's medium\n"
+      "spheres overlap). Seconds are the least of three runs with all threads, index included; * "
+      "extrapolated\nfrom a sample, one thread. Spheres: lattice / interstice / tetrahedral / "
+      "replacement.\n\n");
+  Table table({"container", "triangles", "paper %", "ours %", "diff", "spheres", "corrected by verification",
+               "ours s", "our brute force s", "paper brute s", "paper indexed s", "paper best GPU s",
+               "paper best / ours", "index MB", "paper's matrices MB"});
+  Totals totals;
+  for (const Container& container : paper_containers()) {
+    if (const auto mesh = container_mesh(container, models)) {
+      add(totals, container, add_row(table, container, *mesh));
+    } else {
+      ++totals.missing;
+      fmt::print(stderr, "{} is skipped: {}/{} is not there\n", container.name, models, container.model_file);
+    }
+  }
+  const double mean =
+      totals.sum_of_differences / static_cast<double>(std::max<std::size_t>(totals.containers, 1));
+  const std::string differences =
+      fmt::format("Mean absolute difference of density to the paper: {:.2f} points, none above {:.2f}.", mean,
+                  totals.largest_difference);
+  fmt::print("\n{}\n", differences);
+  if (totals.corrected > 0) fmt::print(stderr, "{} spheres broke a limit\n", totals.corrected);
+  if (totals.corrected > 0) return 1;
+  if (totals.missing > 0) return arguments.table_file.empty() && arguments.summary_file.empty() ? 0 : 1;
+  totals.summary += fmt::format(
+      "| densities of the paper's ten containers (hexagonal, disjoint spheres) | {:.2f} points from the "
+      "paper's on average, {:.2f} at most |\n",
+      mean, totals.largest_difference);
+  write_figures(arguments, table.markdown() + '\n' + differences + '\n', totals.summary);
+  return 0;
 }
 
 }  // namespace
 }  // namespace aerate::bench
 
-int main(int argc, char** argv) {
-  using namespace aerate::bench;
-  const std::string models = argc > 1 ? argv[1] : "../shared/models";
-  fmt::print(
-      "Hexagonal packing of the paper's containers: no wall, no gap, disjoint spheres (the paper's medium\n"
-      "spheres overlap). Seconds are the least of three runs with all threads, index included; * "
-      "extrapolated\n"
-      "from a sample, one thread. Spheres: lattice / interstice / tetrahedral / replacement.\n\n"
-      "| container | triangles | paper % | ours % | diff | spheres | dropped by verification | ours s | our "
-      "brute "
-      "force s | paper brute s | paper indexed s | paper best GPU s | paper best / ours | index MB | paper's "
-      "matrices MB |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const Container& container : paper_containers()) {
-    if (const auto mesh = container_mesh(container, models)) {
-      print_row(container, *mesh);
-    } else {
-      fmt::print("| {} | skipped: {}/{} is not there |\n", container.name, models, container.model_file);
-    }
-  }
+int main(int argc, char** argv) try {
+  return aerate::bench::run(aerate::bench::parse_figure_arguments(argc, argv, 1));
+} catch (const std::exception& error) {
+  fmt::print(stderr, "paper_table: {}\n", error.what());
+  return 2;
 }

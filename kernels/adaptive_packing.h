@@ -307,7 +307,7 @@ class AdaptivePacker {
   void rebuild_grids(double reach) {
     grid_.reset(box_, reach, parameters_.gap, at_a_time_);
     // A trifle more than the gap, since two that are accepted together may touch.
-    selection_.reset(box_, reach, parameters_.gap + shrink_, grid_.cell());
+    selection_.reset(box_, reach, parameters_.gap + shrink_, grid_.least_cell(box_));
   }
 
   // One round: false if nothing of at least the threshold was placed. `settling`, if any: where balls are

@@ -251,19 +251,22 @@ class BallGrid {
 
   BallGridView<Shape> view() { return view_; }
   double reach() const { return view_.reach; }
-  double cell() const { return view_.cells.cell_size; }
+  // No cell of a grid over the box should be smaller, for memory's sake.
+  double least_cell(const Box3d& box) const {
+    const Vec3d size = box.upper - box.lower;
+    const double volume =
+        max_of(size.x, view_.reach) * max_of(size.y, view_.reach) * max_of(size.z, view_.reach);
+    return std::cbrt(volume / most_cells());
+  }
 
   // A grid over the box for clearances up to `reach`, with all balls that have been entered so far.
   //   most_at_a_time: layers of balls that are worked on at a time, four bytes each
   void reset(const Box3d& box, double reach, double gap, std::size_t most_at_a_time) {
+    constexpr double kCellToReach = 4;  // smaller cells cost more to fill than they save
     most_at_a_time_ = most_at_a_time;
-    const Vec3d size = box.upper - box.lower;
-    const double volume = max_of(size.x, reach) * max_of(size.y, reach) * max_of(size.z, reach);
-    constexpr double kCellToReach = 1.4;  // smaller cells cost more to fill than they save
-    const double cell = max_of(kCellToReach * reach, std::cbrt(volume / most_cells()));
-    view_.cells = make_cell_grid(box, cell);
     view_.reach = reach;
     view_.gap = gap;
+    view_.cells = make_cell_grid(box, max_of(kCellToReach * reach, least_cell(box)));
     const std::size_t count = view_.cells.cell_count();
     if (heads_.size() < count) {
       heads_ = {};

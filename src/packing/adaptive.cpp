@@ -87,7 +87,7 @@ double expected_spheres(const Mesh& mesh, double volume, const PackingLimits& li
 WorkEstimate estimate_work(const Mesh& mesh, double volume, const PackingLimits& limits,
                            const AdaptiveOptions& options) {
   constexpr double kSecondsPerFacet = 0.8e-6;
-  constexpr double kSecondsPerSphere = 450e-6;
+  constexpr double kSecondsPerSphere = 200e-6;
   const auto facets = static_cast<double>(mesh.triangles.size());
   const double spheres = expected_spheres(mesh, volume, limits, options);
   return {facets * kSecondsPerFacet + spheres * kSecondsPerSphere,

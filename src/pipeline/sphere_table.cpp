@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::array kKinds{SphereKind::lattice, SphereKind::interstice, SphereKind::tetrahedral,
                             SphereKind::replacement, SphereKind::adaptive};
-constexpr const char* kCsvHeader = "x,y,z,radius";
+constexpr std::string_view kCsvHeader = "x,y,z,radius,kind";
+constexpr std::string_view kCsvHeaderWithoutKind = "x,y,z,radius";
 constexpr const char* kSchema = "aerate.spheres";
 
 // Where in a file something is, for messages.
@@ -45,16 +46,26 @@ double parse_number(std::string_view text, const Place& place) {
 }
 
 SphereKind parse_kind(std::string_view text, const Place& place) {
-  while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   for (const SphereKind kind : kKinds) {
     if (text == name_of(kind)) return kind;
   }
   fail(place, fmt::format("unknown kind of sphere '{}'", text));
 }
 
+// As PLY files have it: a place in the list of kinds.
+SphereKind parse_kind_number(std::string_view text, const Place& place) {
+  const double number = parse_number(text, place);
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    if (number == static_cast<double>(i)) return kKinds[i];
+  }
+  fail(place, fmt::format("unknown kind of sphere '{}'", text));
+}
+
 Sphere checked(const Sphere& sphere, const Place& place) {
-  const double sum = sphere.centre.x + sphere.centre.y + sphere.centre.z + sphere.radius;
-  if (!std::isfinite(sum)) fail(place, "a number is not finite");
+  for (const double number : {sphere.centre.x, sphere.centre.y, sphere.centre.z, sphere.radius}) {
+    if (!std::isfinite(number)) fail(place, "a number is not finite");
+  }
   if (!(sphere.radius > 0)) fail(place, fmt::format("a radius of {} mm", sphere.radius));
   return sphere;
 }
@@ -69,13 +80,25 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   }
 }
 
+// The next line without what a line may end with elsewhere.
+bool next_line(std::istream& in, std::string& line) {
+  if (!std::getline(in, line)) return false;
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  return true;
+}
+
 std::vector<Sphere> read_csv(std::istream& in, const std::string& file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write one
   std::string line;
-  std::getline(in, line);
-  if (line.rfind(kCsvHeader, 0) != 0) fail({file, "line 1"}, "the header is not x,y,z,radius,kind");
+  next_line(in, line);
+  if (line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
+  // Any other column, or another order, might mean other units or things than spheres.
+  if (line != kCsvHeader && line != kCsvHeaderWithoutKind) {
+    fail({file, "line 1"}, fmt::format("the header is not {}", kCsvHeader));
+  }
   std::vector<Sphere> spheres;
-  for (std::size_t number = 2; std::getline(in, line); ++number) {
-    if (line.empty() || line == "\r") continue;
+  for (std::size_t number = 2; next_line(in, line); ++number) {
+    if (line.empty()) continue;
     const Place place{file, fmt::format("line {}", number)};
     const std::vector<std::string_view> fields = split(line, ',');
     if (fields.size() != 4 && fields.size() != 5)
@@ -115,7 +138,7 @@ std::vector<Sphere> read_ply(std::istream& in, const std::string& file) {
   std::vector<std::string> properties;
   std::size_t number = 0;
   const auto place = [&] { return Place{file, fmt::format("line {}", number)}; };
-  while (std::getline(in, line)) {
+  while (next_line(in, line)) {
     ++number;
     if (number == 1 && line != "ply") fail(place(), "not a PLY file");
     std::istringstream words(line);
@@ -144,18 +167,16 @@ std::vector<Sphere> read_ply(std::istream& in, const std::string& file) {
   const std::size_t x = column("x"), y = column("y"), z = column("z"), radius = column("radius");
   const std::size_t kind = column("kind");
   std::vector<Sphere> spheres;
-  while (spheres.size() < *count && std::getline(in, line)) {
+  while (spheres.size() < *count && next_line(in, line)) {
     ++number;
     const std::vector<std::string_view> fields = split(line, ' ');
     if (fields.size() != properties.size()) {
       fail(place(), fmt::format("{} values instead of {}", fields.size(), properties.size()));
     }
-    const double kind_number = parse_number(fields[kind], place());
-    const auto kind_index = static_cast<std::size_t>(std::clamp(kind_number, 0.0, double{kKinds.size()}));
-    if (kind_index >= kKinds.size()) fail(place(), "unknown kind of sphere");
+    const SphereKind kind_of_sphere = parse_kind_number(fields[kind], place());
     const Vec3d centre{parse_number(fields[x], place()), parse_number(fields[y], place()),
                        parse_number(fields[z], place())};
-    spheres.push_back(checked({centre, parse_number(fields[radius], place()), kKinds[kind_index]}, place()));
+    spheres.push_back(checked({centre, parse_number(fields[radius], place()), kind_of_sphere}, place()));
   }
   if (spheres.size() != *count) {
     fail(place(), fmt::format("the header promises {} spheres, the file has {}", *count, spheres.size()));

@@ -345,12 +345,15 @@ TEST(BadInput, NumbersThatMakeNoSense) {
 }
 
 TEST(BadInput, GivenSpheresThatAreNoPackingOfTheModel) {
-  const std::string header = "x,y,z,radius,kind\n";
-  const auto refused = [&](const std::string& rows, const std::vector<std::string>& said) {
+  const auto file_refused = [&](const std::string& name, const std::string& text, int exit_code,
+                                const std::vector<std::string>& said) {
     const Job job;
     const auto model = job.input("block.stl", make_box({0, 0, 0}, {30, 30, 30}));
-    const auto spheres = job.input("list.csv", header + rows);
-    expect_refused(job, run(job.hollow(model, {"--spheres", spheres.string()})), kUnreadable, said);
+    const auto spheres = job.input(name, text);
+    expect_refused(job, run(job.hollow(model, {"--spheres", spheres.string()})), exit_code, said);
+  };
+  const auto refused = [&](const std::string& rows, const std::vector<std::string>& said) {
+    file_refused("list.csv", "x,y,z,radius,kind\n" + rows, kUnreadable, said);
   };
   refused("10,10,10,3,adaptive\n12,10,10,3,adaptive\n", {"list.csv", "sphere", "gap of -4 mm", "sphere 1"});
   refused("10,10,10,3,adaptive\n50,10,10,3,adaptive\n", {"sphere 2", "(50.000, 10.000, 10.000)", "outside"});
@@ -360,7 +363,15 @@ TEST(BadInput, GivenSpheresThatAreNoPackingOfTheModel) {
   refused("10,10,ten,3,adaptive\n", {"line 2", "'ten'"});
   refused("10,10,10,3,cube\n", {"line 2", "'cube'"});
   refused("10,10\n", {"line 2", "2 fields"});
+  refused("1e308,10,10,3,adaptive\n", {"sphere 1", "outside"});
+  refused("10,10,10,1e308,adaptive\n", {"sphere 1", "wall of"});
   refused("", {"no spheres"});
+  file_refused("list.csv", "", kUnreadable, {"list.csv", "line 1", "x,y,z,radius,kind"});
+  file_refused("list.csv", "x,y,z,diameter\n10,10,10,3\n", kUnreadable, {"list.csv", "line 1", "header"});
+  file_refused("list.csv", "10,10,10,3,adaptive\n", kUnreadable, {"list.csv", "line 1", "header"});
+  file_refused("list.json", "{\"spheres\": [[10, 10, 10, 3]]}", kUnreadable, {"list.json", "schema"});
+  file_refused("list.ply", "solid\n", kUnreadable, {"list.ply", "line 1", "PLY"});
+  file_refused("list.stl", "solid\n", kUsage, {"list.stl", ".csv, .json or .ply"});
 }
 
 TEST(BadInput, UnknownMaterialListsTheKnownOnes) {
