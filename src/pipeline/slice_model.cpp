@@ -1,6 +1,7 @@
 #include "pipeline/slice_model.h"
 
 #include <string>
+#include <strings.h>
 #include <system_error>
 #include <utility>
 
@@ -21,6 +22,15 @@ void require_other_than_settings(const SliceModelOptions& options) {
   }
 }
 
+// A slip such as `-o part.stl` would put G-code where a model is looked for.
+void require_no_models_name(const std::filesystem::path& output) {
+  for (const char* ending : {".stl", ".3mf", ".obj", ".ply", ".off"}) {
+    if (::strcasecmp(output.extension().c_str(), ending) == 0)
+      throw UsageError(output.string() + ": a model's name, and what is written is G-code",
+                       "give a name such as " + output.stem().string() + ".gcode");
+  }
+}
+
 // Hollowing is quick beside slicing, and says sooner that nothing can be removed; then, if the form is left
 // open, the solid model is all there is.
 std::vector<SlicedForm> slice_what_can_be_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
@@ -37,6 +47,7 @@ std::vector<SlicedForm> slice_what_can_be_hollowed(const std::vector<PrintForm>&
 }  // namespace
 
 SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
+  require_no_models_name(options.output);
   require_other_file(options.hollow.model, options.output);
   SliceReport report;
   report.model = options.hollow.model;

@@ -145,6 +145,16 @@ TEST_F(Slicing, RefusesToWriteOverItsSettings) {
   EXPECT_EQ(read_bytes(output()), "fill_density = 40%\n");
 }
 
+TEST_F(Slicing, RefusesToGiveGcodeTheNameOfAModel) {
+  const FakeSlicer fake(folder_);
+  const fs::path part = block(), other = outputs() / "part.STL";
+  const ProcessResult result = run({AERATE_EXECUTABLE, "slice", part, "--slicer", "prusa-slicer",
+                                    "--slicer-path", fake.program(), "-o", other});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(contains(result.err, "give a name such as part.gcode"));
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
 TEST_F(Slicing, SaysThatBinaryGcodeCannotBeRead) {
   const FakeSlicer fake(folder_);
   fake.hands_out("voids", "GCDE and so on");
@@ -293,9 +303,9 @@ TEST_F(Slicing, CuraEngineLeavesTheVoidsLayerByLayer) {
     GTEST_SKIP() << "no definitions for CuraEngine: scripts/install-dependencies --checks fetches them";
   const fs::path solid = model("solid.stl", make_box({0, 0, 0}, {20, 20, 20})),
                  hollow = folder_.path() / "hollow.stl";
-  // One void in the middle, from 2 to 18 mm.
+  // One void in the middle, from 2 to 18 mm; a sphere, since a roof would be too high.
   ASSERT_EQ(run({AERATE_EXECUTABLE, "hollow", solid, "-o", hollow, "--wall", "2", "--max-radius", "8",
-                 "--min-radius", "7"})
+                 "--min-radius", "7", "--bridge", "20"})
                 .exit_code,
             0);
   // Lines side by side, so that what is filled is seen in the length.
