@@ -119,12 +119,14 @@ class RunningChild {
 }  // namespace
 
 PrivateFolder::PrivateFolder(Monitor& monitor) : monitor_(monitor) {
-  std::error_code error;
-  const fs::path base = fs::temp_directory_path(error);
-  std::string pattern = (base / "aerate-XXXXXX").string();
-  if (error || ::mkdtemp(pattern.data()) == nullptr) {
+  // Not temp_directory_path, which does not say which path it could not use.
+  const char* given = std::getenv("TMPDIR");
+  const fs::path base = given != nullptr && *given != '\0' ? given : "/tmp";
+  std::string pattern = (fs::absolute(base) / "aerate-XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr) {
+    const int error = errno;
     throw FailureError(
-        "no temporary folder can be made in " + base.string() + ": " + std::generic_category().message(errno),
+        "no temporary folder can be made in " + base.string() + ": " + std::generic_category().message(error),
         "set TMPDIR to a folder with free space");
   }
   path_ = pattern;

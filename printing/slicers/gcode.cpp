@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <numbers>
 #include <utility>
 
 namespace aerate {
@@ -141,14 +141,39 @@ class Interpreter {
     if (code == 90) relative_ = relative_filament_ = false;
     if (code == 91) relative_ = relative_filament_ = true;
     if (code == 92) set_position(line);
-    return code >= 0 && code <= 3 && move(line);
+    if (code < 0 || code > 3) return false;
+    turn_ = code == 2 ? -1 : code == 3 ? 1 : 0;
+    return move(line);
   }
 
-  ExtrusionMove state() const { return {axes_[0], axes_[1], axes_[2], fed_}; }
+  // The move that `run` reported, appended: one, or the chords of an arc.
+  void append_moves(std::vector<ExtrusionMove>& moves) const {
+    const double from_x = before_[0], from_y = before_[1];
+    if (turn_ == 0) {
+      moves.push_back({from_x, from_y, axes_[0], axes_[1], axes_[2], fed_});
+      return;
+    }
+    constexpr double kLongestChord = 1;  // mm
+    const double centre_x = from_x + centre_offset_[0], centre_y = from_y + centre_offset_[1];
+    const double radius = std::hypot(centre_offset_[0], centre_offset_[1]);
+    const double begin = std::atan2(from_y - centre_y, from_x - centre_x);
+    double angle = std::atan2(axes_[1] - centre_y, axes_[0] - centre_x) - begin;
+    if (turn_ * angle <= 0) angle += turn_ * kFullTurn;
+    const double chords = std::clamp(std::ceil(std::abs(angle) * radius / kLongestChord), 1.0, 1e4);
+    double x = from_x, y = from_y;
+    for (double i = 1; i <= chords; ++i) {
+      const double to = begin + angle * i / chords;
+      const double next_x = i == chords ? axes_[0] : centre_x + radius * std::cos(to);
+      const double next_y = i == chords ? axes_[1] : centre_y + radius * std::sin(to);
+      moves.push_back({x, y, next_x, next_y, axes_[2], fed_ / chords});
+      x = next_x;
+      y = next_y;
+    }
+  }
 
  private:
   static int axis_of(char letter) {
-    constexpr std::string_view kAxes = "XYZE";
+    constexpr std::string_view kAxes = "XYZEIJ";
     const std::size_t axis = kAxes.find(letter);
     return axis == std::string_view::npos ? -1 : static_cast<int>(axis);
   }
@@ -165,22 +190,34 @@ class Interpreter {
   }
 
   void set_position(std::string_view line) {
-    for_each_word(line, [&](std::size_t axis, double value) { axes_[axis] = value; });
+    for_each_word(line, [&](std::size_t axis, double value) {
+      if (axis < axes_.size()) axes_[axis] = value;
+    });
   }
 
   bool move(std::string_view line) {
-    const std::array<double, 4> before = axes_;
+    before_ = axes_;
+    centre_offset_ = {};
     for_each_word(line, [&](std::size_t axis, double value) {
+      if (axis > kFilament) {
+        centre_offset_[axis - kFilament - 1] = value;
+        return;
+      }
       const bool relative = axis == kFilament ? relative_filament_ : relative_;
       axes_[axis] = relative ? axes_[axis] + value : value;
     });
-    fed_ = axes_[kFilament] - before[kFilament];
-    const bool travels = axes_[0] != before[0] || axes_[1] != before[1] || axes_[2] != before[2];
+    if (centre_offset_ == std::array<double, 2>{}) turn_ = 0;  // given by its radius: taken as straight
+    fed_ = axes_[kFilament] - before_[kFilament];
+    const bool travels =
+        turn_ != 0 || axes_[0] != before_[0] || axes_[1] != before_[1] || axes_[2] != before_[2];
     return travels && fed_ > 0;
   }
 
   static constexpr std::size_t kFilament = 3;
-  std::array<double, 4> axes_{};
+  static constexpr double kFullTurn = 2 * std::numbers::pi;
+  std::array<double, 4> axes_{}, before_{};
+  std::array<double, 2> centre_offset_{};  // of an arc, from where it begins
+  int turn_ = 0;                           // 1 counterclockwise, -1 clockwise, 0 straight
   double fed_ = 0;
   bool relative_ = false;
   bool relative_filament_ = false;
@@ -194,6 +231,21 @@ std::optional<std::pair<std::size_t, std::size_t>> find_setting(std::string_view
   if (at == std::string_view::npos) return std::nullopt;
   const std::size_t end = std::min(gcode.find('\n', at + 1), gcode.size() - 1);
   return std::pair{at + 1, end - at};
+}
+
+// The lines from "; thumbnail begin ..." to "; thumbnail end"; other formats are "thumbnail_QOI" and the
+// like.
+std::string thumbnails_in(std::string_view gcode) {
+  std::string pictures;
+  bool inside = false;
+  for_each_line(gcode, [&](std::string_view line) {
+    const bool names_it = line.starts_with("; thumbnail");
+    if (names_it && line.find(" begin ") != std::string_view::npos) inside = true;
+    if (inside) pictures.append(line).append("\n");
+    if (names_it && line.ends_with(" end")) inside = false;
+    return inside || line.empty() || line.starts_with(';');  // they stand before the first command
+  });
+  return pictures;
 }
 
 }  // namespace
@@ -258,11 +310,17 @@ std::string with_setting_of(std::string gcode, std::string_view original, std::s
   return gcode;
 }
 
+std::string with_thumbnails_of(std::string gcode, std::string_view original) {
+  std::string pictures = thumbnails_in(original);
+  if (pictures.empty() || !thumbnails_in(gcode).empty()) return gcode;
+  return with_comments(gcode, "\n;\n" + pictures + ";\n");
+}
+
 std::vector<ExtrusionMove> extrusion_moves(std::string_view gcode) {
   std::vector<ExtrusionMove> moves;
   Interpreter machine;
   for_each_line(gcode, [&](std::string_view line) {
-    if (machine.run(line)) moves.push_back(machine.state());
+    if (machine.run(line)) machine.append_moves(moves);
     return true;
   });
   return moves;
@@ -276,26 +334,6 @@ bool extrudes(std::string_view gcode) {
     return !found;
   });
   return found;
-}
-
-std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
-                                         const std::vector<ExtrusionMove>& b) {
-  constexpr double kRounding = 0.01;  // mm; slicers write three decimals
-  const std::size_t common = std::min(a.size(), b.size());
-  for (std::size_t i = 0; i < common; ++i) {
-    const double distance = std::max({std::abs(a[i].x - b[i].x), std::abs(a[i].y - b[i].y),
-                                      std::abs(a[i].z - b[i].z), std::abs(a[i].filament - b[i].filament)});
-    if (distance > kRounding) {
-      char text[128];
-      std::snprintf(text, sizeof text,
-                    "extrusion %zu of %zu ends at (%.2f, %.2f, %.2f) mm and not at (%.2f, %.2f, %.2f) mm",
-                    i + 1, a.size(), a[i].x, a[i].y, a[i].z, b[i].x, b[i].y, b[i].z);
-      return text;
-    }
-  }
-  if (a.size() != b.size())
-    return std::to_string(a.size()) + " extrusions and not " + std::to_string(b.size());
-  return std::nullopt;
 }
 
 std::string with_comments(std::string_view gcode, std::string_view comments) {

@@ -40,20 +40,22 @@ std::optional<std::string> setting_in(std::string_view gcode, std::string_view k
 // The same G-code with the whole line of a setting replaced by the one of `original`, if both have it.
 std::string with_setting_of(std::string gcode, std::string_view original, std::string_view key);
 
-// Where the nozzle is after a move that extrudes, mm, and how much filament went through it.
+// The same G-code with the pictures for a printer's display that `original` has: a slicer makes them in its
+// window only. As it is if `original` has none, or the G-code has its own.
+std::string with_thumbnails_of(std::string gcode, std::string_view original);
+
+// A straight move that extrudes: from where to where, mm, and how much filament went through the nozzle.
 struct ExtrusionMove {
+  double from_x = 0, from_y = 0;
   double x = 0, y = 0, z = 0, filament = 0;
 };
 
-// Moves of G0 to G3 that feed filament while moving; absolute and relative coordinates, G92. O(bytes).
+// Moves of G0 to G3 that feed filament while moving; absolute and relative coordinates, G92. Arcs (by I, J)
+// are cut into chords of at most a millimetre. O(bytes).
 std::vector<ExtrusionMove> extrusion_moves(std::string_view gcode);
 
 // Whether there is any such move.
 bool extrudes(std::string_view gcode);
-
-// How two lists of moves differ by more than rounding (0.01 mm), in words; nothing if they do not.
-std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
-                                         const std::vector<ExtrusionMove>& b);
 
 // Puts comment lines (";" included) where no reader of G-code minds: after the first line, or after the
 // header block of OrcaSlicer. Never inside a block of settings.

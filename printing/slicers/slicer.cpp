@@ -275,6 +275,9 @@ GcodeFigures slice(const Slicer& slicer, const SliceJob& job, Monitor& monitor) 
     fail(slicer, job, "wrote no G-code", outcome.printed);
   if (slicer.kind == SlicerKind::cura_engine) replace_cura_header(job.gcode, outcome.printed);
   const std::string text = read_text(job.gcode);
+  if (is_binary_gcode(text))
+    fail(slicer, job, "wrote binary G-code, which cannot be read here: set binary_gcode = 0",
+         outcome.printed);
   if (!extrudes(text)) fail(slicer, job, "wrote G-code that extrudes nothing", outcome.printed);
   GcodeFigures figures = figures_of(text);
   if (slicer.kind == SlicerKind::cura_engine) {

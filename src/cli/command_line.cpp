@@ -4,8 +4,10 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -19,6 +21,7 @@
 #include "cli/pack_command.h"
 #include "cli/process_options.h"
 #include "cli/slice_command.h"
+#include "core/error.h"
 #include "packing/device.h"
 #include "pipeline/process_choice.h"
 
@@ -48,7 +51,7 @@ std::string about_config(const CLI::App& app, std::string what) {
 }
 
 // CLI11's message as an error of the program's own.
-[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
+[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error, const HookCommand& hook) {
   std::string what = error.what();
   while (!what.empty() && what.back() == '\n') what.pop_back();
   if (dynamic_cast<const CLI::ConfigError*>(&error) != nullptr) {
@@ -59,7 +62,21 @@ std::string about_config(const CLI::App& app, std::string what) {
   for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
   const std::vector<std::string> unknown = app.remaining();
   if (app.get_subcommands().empty() && !unknown.empty()) what = "'" + unknown.front() + "' is no command";
-  throw UsageError(what, "see '" + command + " --help'");
+  const UsageError refusal(what, "see '" + command + " --help'");
+  if (hook.chosen()) throw HookCommand::on_one_line(refusal);
+  throw refusal;
+}
+
+void run_hook(const HookCommand& hook, InterruptGuard& interrupt) {
+  try {
+    hook.run(interrupt);
+  } catch (const Error& error) {
+    throw HookCommand::on_one_line(error);
+  } catch (const std::bad_alloc&) {
+    throw FailureError("out of memory; the G-code is as it was");
+  } catch (const std::exception& error) {
+    throw HookCommand::on_one_line(FailureError(error.what(), "this should not happen: please report it"));
+  }
 }
 
 std::string version_and_devices() {
@@ -107,7 +124,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
     require_stdout_written();
     return ExitCode::done;
   } catch (const CLI::ParseError& error) {
-    refuse(app, error);
+    refuse(app, error, hook);
   }
 
   InterruptGuard interrupt;
@@ -115,7 +132,7 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   if (pack.chosen()) pack.run(interrupt);
   if (inspect.chosen()) inspect.run(interrupt);
   if (slice.chosen()) slice.run(interrupt);
-  if (hook.chosen()) hook.run(interrupt);
+  if (hook.chosen()) run_hook(hook, interrupt);
   require_stdout_written();
   return ExitCode::done;
 }

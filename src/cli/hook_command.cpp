@@ -48,7 +48,7 @@ struct HookCommand::Options {
     command
         .add_option("--print-setup", setup,
                     "Print the line to paste into a slicer's post-processing scripts: prusa-slicer, "
-                    "super-slicer or orca-slicer (there for annotation only)")
+                    "super-slicer or orca-slicer (both untested; the latter for annotation only)")
         ->check(CLI::IsMember({"prusa-slicer", "super-slicer", "orca-slicer"}))
         ->type_name("SLICER");
   }
@@ -76,6 +76,17 @@ HookCommand::~HookCommand() = default;
 
 bool HookCommand::chosen() const {
   return options_->command.parsed();
+}
+
+// Of several lines the first says what failed, and the last of what a program printed mostly why.
+Error HookCommand::on_one_line(const Error& error) {
+  std::string text = error.what();
+  while (text.ends_with('\n')) text.pop_back();
+  const std::size_t first_end = text.find('\n');
+  if (first_end != std::string::npos)
+    text = text.substr(0, first_end) + " ... " + text.substr(text.rfind('\n') + 1);
+  if (!error.hint().empty()) text += "; " + error.hint();
+  return {error.code(), text};
 }
 
 void HookCommand::run(InterruptGuard& interrupt) const {

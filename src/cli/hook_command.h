@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "core/error.h"
+
 namespace CLI {
 class App;
 }
@@ -21,6 +23,9 @@ class HookCommand {
 
   bool chosen() const;
   void run(InterruptGuard& interrupt) const;
+
+  // The same error in one line, with its hint: slicers show what a failing script wrote in a dialog.
+  static Error on_one_line(const Error& error);
 
  private:
   struct Options;

@@ -90,18 +90,6 @@ Json json_of(const Clearances& clearances) {
   return {{"wall_mm", clearances.wall}, {"gap_mm", or_null(clearances.gap)}};
 }
 
-void add_closing(Json& json, const std::vector<StageCost>& stages, const std::vector<std::string>& notices) {
-  Json list = Json::array();
-  for (const StageCost& stage : stages)
-    list.push_back(
-        {{"name", stage.name}, {"seconds", stage.seconds}, {"peak_memory_bytes", stage.peak_bytes}});
-  const StageCost total = total_of(stages);
-  json["stages"] = list;
-  json["seconds"] = total.seconds;
-  json["peak_memory_bytes"] = total.peak_bytes;
-  json["notices"] = notices;
-}
-
 // What voids would remove they do not as modifiers: null there, and what is known under "modifiers".
 Json material_of(const HollowReport& report) {
   if (report.modifiers) return nullptr;

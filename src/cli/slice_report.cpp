@@ -82,21 +82,13 @@ Json json_of(const std::vector<SlicedForm>& forms) {
   return list;
 }
 
-void add_closing(Json& json, const std::vector<SlicedForm>& forms, const std::vector<StageCost>& stages,
-                 const std::vector<std::string>& notices) {
-  const StageCost total = total_of(stages);
-  json["seconds"] = total.seconds;
-  json["seconds_in_slicer"] = slicer_seconds(forms);
-  json["peak_memory_bytes"] = total.peak_bytes;
-  json["notices"] = notices;
-}
-
 }  // namespace
 
 std::string to_text(const SliceReport& report) {
   const SlicedForm& chosen = report.forms[report.chosen];
-  return fmt::format("{:<12}{}\n{:<12}{} ({})\n", "model", report.model.filename().string(), "slicer",
-                     name_of(report.slicer.kind), report.slicer.program.string()) +
+  const char* untested = report.slicer.kind == SlicerKind::orca_slicer ? ", untested" : "";
+  return fmt::format("{:<12}{}\n{:<12}{} ({}){}\n", "model", report.model.filename().string(), "slicer",
+                     name_of(report.slicer.kind), report.slicer.program.string(), untested) +
          table(report.forms) + voids_line(report.forms.back()) +
          fmt::format("{:<12}{}: {}\n", "output", report.output.filename().string(), name_of(chosen.form)) +
          time_line(report.forms, report.stages);
@@ -117,7 +109,8 @@ std::string to_json(const SliceReport& report) {
   json["slicer"] = {{"name", name_of(report.slicer.kind)}, {"program", report.slicer.program.string()}};
   json["forms"] = json_of(report.forms);
   json["output"] = {{"path", report.output.string()}, {"form", name_of(report.forms[report.chosen].form)}};
-  add_closing(json, report.forms, report.stages, report.notices);
+  json["seconds_in_slicer"] = slicer_seconds(report.forms);
+  add_closing(json, report.stages, report.notices);
   return dump(json);
 }
 
@@ -128,7 +121,8 @@ std::string to_json(const HookReport& report) {
   json["forms"] = json_of(report.forms);
   json["result"] = report.chosen > 0 ? name_of(report.forms[report.chosen].form) : "unchanged";
   json["remark"] = report.remark;
-  add_closing(json, report.forms, report.stages, report.notices);
+  json["seconds_in_slicer"] = slicer_seconds(report.forms);
+  add_closing(json, report.stages, report.notices);
   return dump(json);
 }
 

@@ -40,8 +40,11 @@ FileFacts check_ply(const FileBytes& bytes, const std::string& name);
 FileFacts check_off(FileBytes& bytes, const std::string& name);
 
 // The same for a 3MF package: a whole zip archive that holds a model, with the checksums of what is needed of
-// it.
-void check_3mf(const FileBytes& bytes, const std::string& name);
+// it. Takes out what the package says to have and has not.
+void check_3mf(FileBytes& bytes, const std::string& name);
+
+// Throws InputError for a slicer's project with volumes that are not part of the model.
+void require_model_parts_only(const FileBytes& bytes, const std::string& name);
 
 // The same for a binary STL file from its first bytes and its size alone, so that 50 bytes for each triangle
 // are read once only, by the importer. Empty if a whole look is needed: another kind of file, or a wrong

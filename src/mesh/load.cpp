@@ -64,6 +64,7 @@ LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& opt
   if (extension == "3mf") {
     FileBytes bytes = read_file(path);
     check_3mf(bytes, name);
+    if (options.other_volumes == OtherVolumes::refuse) require_model_parts_only(bytes, name);
     imported = import_3mf(bytes, options.unit, options.scale, name);
   } else if (extension == "stl" || extension == "obj" || extension == "ply" || extension == "off") {
     const double factor = millimetres_per(options.unit.value_or(LengthUnit::millimetre)) * options.scale;

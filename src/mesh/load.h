@@ -13,10 +13,15 @@ enum class LengthUnit { millimetre, centimetre, metre, inch };
 
 double millimetres_per(LengthUnit unit);
 
+// What is done with a slicer's 3MF project that has modifiers, negative volumes or supports painted as
+// volumes: in the package they look like bodies of the model.
+enum class OtherVolumes { refuse, take_as_bodies };
+
 struct LoadOptions {
   // For formats that carry no unit (all but 3MF); 3MF files bring their own and refuse a contradicting one.
   std::optional<LengthUnit> unit;
   double scale = 1.0;  // on top of the unit; finite and positive
+  OtherVolumes other_volumes = OtherVolumes::refuse;
 };
 
 struct LoadedModel {
@@ -32,7 +37,8 @@ struct LoadedModel {
 // to millimetres in double and rounded once; with unit and scale 1 they keep the bits of a binary file.
 // (assimp reads decimal text to within one unit in the last place.) Throws InputError (missing, a directory,
 // empty, truncated, wrong triangle count, NaN or infinite coordinates, unknown or garbled content, no
-// triangles), UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
+// triangles, a slicer's project with modifiers), UsageError for a unit that contradicts the file's or an
+// unusable scale. O(bytes).
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace aerate

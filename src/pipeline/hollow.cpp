@@ -56,101 +56,119 @@ void warn_of_tipping(const HollowReport& report, Monitor& monitor) {
                   centre.x, centre.y, centre.z, -*report.balance.margin_after));
 }
 
+// Throws what check_drained and check_output throw.
+OutputFacts check_written(const Mesh& written, const HollowedModel& hollowed, HollowReport& report,
+                          Monitor& monitor) {
+  if (hollowed.drained) {
+    return check_drained(written,
+                         {.solid = *hollowed.drained,
+                          .model = hollowed.model.mesh,
+                          .inspection = hollowed.model.inspection,
+                          .balls = hollowed.plan.spheres,
+                          .plan = report.drainage->plan,
+                          .limits = report.limits,
+                          .tolerance = report.tolerance_used},
+                         *report.drainage, monitor);
+  }
+  return check_output(written,
+                      {.solid = hollowed.solid,
+                       .model = hollowed.model.mesh,
+                       .inspection = hollowed.model.inspection,
+                       .plan = hollowed.plan,
+                       .limits = report.limits,
+                       .tolerance = report.tolerance_used,
+                       .surface = report.surface},
+                      monitor);
+}
+
+HollowReport write_to(AnnouncedFile& pending, const HollowedModel& hollowed, const HollowOptions& options,
+                      Monitor& monitor) {
+  HollowReport report = hollowed.report;
+  report.modifiers = options.modifiers;
+  const auto check = [&](const Mesh& written) {
+    report.output = check_written(written, hollowed, report, monitor);
+    report.output.path = options.output;
+    report.output.file_bytes = std::filesystem::file_size(pending.file().path());
+    if (!options.modifiers)
+      report.balance = balance_of(hollowed.model.mesh, report.output, UprightFrame(report.limits.roof.up));
+    if (report.balance.tips_over()) warn_of_tipping(report, monitor);
+  };
+  write_checked(hollowed.solid, pending, solid_format_of(options), check, monitor);
+  return report;
+}
+
 }  // namespace
 
-HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
-  const SolidFormat format = solid_format_of(options);
-  require_other_file(options.model, options.output);
-
-  JobLog log(monitor);
+HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   HollowReport report;
   report.method = options.packing.method;
   report.tolerance_asked = options.tolerance;
   report.max_triangles = options.max_triangles;
   report.material = options.material;
-  report.modifiers = options.modifiers;
 
   // Modifiers have no walls to pay for, and leave the model solid.
-  const bool makes_voids = !options.modifiers;
   const PackingRequest request =
-      makes_voids ? without_voids_that_cost(options.packing, options, log) : options.packing;
+      options.modifiers ? options.packing : without_voids_that_cost(options.packing, options, monitor);
   report.limits = request.limits;
   report.process = request.process;
-  if (makes_voids && !options.drainage) warn_of_trapped_material(options.packing.process.process, log);
-  PreparedModel model = load_and_inspect(options.model, options.load, log);
-  // Made before the long stages, so that a place that cannot be written to is found at once.
-  AnnouncedFile pending(options.output, log);
+  if (!options.modifiers && !options.drainage)
+    warn_of_trapped_material(options.packing.process.process, monitor);
+  PreparedModel model = load_and_inspect(options.model, options.load, monitor);
   const double voxel_size =
       options.voxel_size.value_or(default_voxel_size(options.packing.limits, model.inspection.box));
-  model = make_usable(std::move(model), {options.surface, options.max_hole, voxel_size}, log);
+  model = make_usable(std::move(model), {options.surface, options.max_hole, voxel_size}, monitor);
   report.input = model.input;
   report.surface = model.level_set ? OuterSurface::remeshed : OuterSurface::kept;
   if (model.level_set) report.voxel_size = model.level_set->voxel_size();
   report.outer_deviation = model.outer_deviation;
   report.volume_estimated = model.inspection.parts_overlap();
 
-  Packing packing = pack_model(model, request, log);
+  Packing packing = pack_model(model, request, monitor);
   report.packing_statistics = packing.statistics;
   report.packing_device = packing.device;
   if (options.drainage) {
-    log.stage("drain");
-    warn_of_wide_tubes(request.process, request.limits.roof, *options.drainage, log);
-    report.drainage = drain_packing(model, packing, *options.drainage, options.tolerance, log);
+    monitor.stage("drain");
+    warn_of_wide_tubes(request.process, request.limits.roof, *options.drainage, monitor);
+    report.drainage = drain_packing(model, packing, *options.drainage, options.tolerance, monitor);
   }
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
-  const VoidPlan plan{packing.spheres, request.limits.roof};
+  VoidPlan plan{packing.spheres, request.limits.roof};
   const std::size_t outer_triangles = model.mesh.triangles.size();
   report.tolerance_used = tolerance_for(plan, options.tolerance, outer_triangles, options.max_triangles);
   if (report.tolerance_used > options.tolerance)
-    log.notice(fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
-                           report.tolerance_used, options.tolerance, *options.max_triangles));
+    monitor.notice(fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
+                               report.tolerance_used, options.tolerance, *options.max_triangles));
   require_memory_for_voids(plan, report.tolerance_used, outer_triangles);
 
-  log.stage("carve");
+  monitor.stage("carve");
   std::optional<DrainedSolid> drained;
   if (report.drainage)
     drained = carve_within(model, packing, report.drainage->plan, report.tolerance_used,
-                           options.max_triangles, log);
-  const Solid solid =
-      drained ? as_solid(*drained) : carve(model, plan, {.tolerance = report.tolerance_used}, log);
-  log.check_interrupted();
+                           options.max_triangles, monitor);
+  Solid solid =
+      drained ? as_solid(*drained) : carve(model, plan, {.tolerance = report.tolerance_used}, monitor);
+  monitor.check_interrupted();
+  return {std::move(report), std::move(plan), std::move(model), std::move(solid), std::move(drained)};
+}
 
-  if (makes_voids && prints_filament(options)) {
+HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor) {
+  AnnouncedFile pending(options.output, monitor);
+  return write_to(pending, hollowed, options, monitor);
+}
+
+HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
+  static_cast<void>(solid_format_of(options));  // refuses what cannot be written
+  require_other_file(options.model, options.output);
+  JobLog log(monitor);
+  // Made before the long stages, so that a place that cannot be written to is found at once.
+  AnnouncedFile pending(options.output, log);
+  HollowedModel hollowed = carve_model(options, log);
+  if (!options.modifiers && prints_filament(options)) {
     log.stage("predict");
-    report.print = predict_print(model.mesh, solid, plan, options, log);
+    hollowed.report.print = predict_print(hollowed.model.mesh, hollowed.solid, hollowed.plan, options, log);
   }
-
-  const auto check = [&](const Mesh& written) {
-    if (drained) {
-      report.output = check_drained(written,
-                                    {.solid = *drained,
-                                     .model = model.mesh,
-                                     .inspection = model.inspection,
-                                     .balls = packing.spheres,
-                                     .plan = report.drainage->plan,
-                                     .limits = request.limits,
-                                     .tolerance = report.tolerance_used},
-                                    *report.drainage, log);
-    } else {
-      report.output = check_output(written,
-                                   {.solid = solid,
-                                    .model = model.mesh,
-                                    .inspection = model.inspection,
-                                    .plan = plan,
-                                    .limits = request.limits,
-                                    .tolerance = report.tolerance_used,
-                                    .surface = report.surface},
-                                   log);
-    }
-    report.output.path = options.output;
-    report.output.file_bytes = std::filesystem::file_size(pending.file().path());
-    if (makes_voids)
-      report.balance = balance_of(model.mesh, report.output, UprightFrame(request.limits.roof.up));
-    if (report.balance.tips_over()) warn_of_tipping(report, log);
-  };
-  write_checked(solid, pending, format, check, log);
-
+  HollowReport report = write_to(pending, hollowed, options, log);
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

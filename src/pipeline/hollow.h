@@ -1,7 +1,12 @@
 #pragma once
 
+#include <optional>
+
 #include "core/monitor.h"
+#include "core/solid.h"
+#include "core/void_plan.h"
 #include "pipeline/options.h"
+#include "pipeline/prepare.h"
 #include "pipeline/report.h"
 
 namespace aerate {
@@ -10,5 +15,19 @@ namespace aerate {
 // The output file appears only if everything holds; what the report says of it was measured on what was read
 // back. Throws UsageError, InputError, MeshError, NothingToRemoveError, FailureError, InterruptedError.
 HollowReport hollow(const HollowOptions& options, Monitor& monitor);
+
+// A model with its voids, ready to be written in one form or several.
+struct HollowedModel {
+  HollowReport report;  // all but what is measured on the written file, and the stages
+  VoidPlan plan;
+  PreparedModel model;
+  Solid solid;
+  std::optional<DrainedSolid> drained;  // what `solid` was made of, if its voids drain
+};
+
+// The job's two halves, for who needs several forms. The first writes nothing; the second writes the form
+// that `options.output` and `options.modifiers` say, and neither predicts a print nor tells its stages.
+HollowedModel carve_model(const HollowOptions& options, Monitor& monitor);
+HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate

@@ -1,16 +1,16 @@
 #include "pipeline/hook.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <string_view>
+#include <strings.h>
 #include <utility>
 
 #include "core/error.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"
+#include "printing/slicers/gcode_match.h"
 #include "printing/slicers/text_file.h"
 #include "printing/write.h"
 
@@ -51,38 +51,41 @@ Slicer slicer_of(const GcodeOrigin& origin, const HookOptions& options) {
   return find_slicer(SlicerKind::prusa_slicer, options.slicer_path);
 }
 
-struct Rectangle {
-  double x_min = 0, x_max = 0, y_min = 0, y_max = 0;
-};
-
-Rectangle extent_of(const std::vector<ExtrusionMove>& moves) {
-  const auto [x_min, x_max] =
-      std::minmax_element(moves.begin(), moves.end(), [](auto& a, auto& b) { return a.x < b.x; });
-  const auto [y_min, y_max] =
-      std::minmax_element(moves.begin(), moves.end(), [](auto& a, auto& b) { return a.y < b.y; });
-  return {x_min->x, x_max->x, y_min->y, y_max->y};
-}
-
 // A hollowed model prints within the same outline.
 void require_same_place(const SlicedForm& form, const std::vector<ExtrusionMove>& original) {
   constexpr double kLineWidth = 1;  // mm, more than that of any: seams and fills may differ
-  const Rectangle a = extent_of(extrusion_moves(read_text(form.gcode))), b = extent_of(original);
-  const double distance = std::max({std::abs(a.x_min - b.x_min), std::abs(a.x_max - b.x_max),
-                                    std::abs(a.y_min - b.y_min), std::abs(a.y_max - b.y_max)});
+  const double distance = outline_distance(extrusion_moves(read_text(form.gcode)), original);
   if (distance > kLineWidth)
     throw FailureError(fmt::format("the slicer put the model with {} elsewhere, {:.1f} mm off",
                                    name_of(form.form), distance));
 }
 
-void require_match(const std::vector<ExtrusionMove>& original, const SlicedForm& solid,
-                   const HookOptions& options) {
-  const auto difference = difference_of(original, extrusion_moves(read_text(solid.gcode)));
+void require_match(const std::vector<ExtrusionMove>& original, const SlicedForm& solid, const Slicer& slicer,
+                   const GcodeOrigin& origin, const HookOptions& options) {
+  const std::string gcode = read_text(solid.gcode);
+  const auto difference = difference_of(original, extrusion_moves(gcode));
   if (!difference) return;
-  throw InputError(fmt::format("{}: sliced with the settings of {} it does not give the same G-code ({})",
-                               options.hollow.model.string(), options.gcode.filename().string(), *difference),
-                   "it has to be the only object on the plate, as it stands in the file: not turned, scaled, "
-                   "mirrored, cut or "
-                   "moved; a project saved as 3MF keeps its place");
+  const std::string slicer_name = origin_of(gcode).name;
+  throw InputError(
+      fmt::format("{}: sliced with the settings of {} it does not give the same G-code ({})",
+                  options.hollow.model.string(), options.gcode.filename().string(), *difference),
+      slicer_name != origin.name
+          ? fmt::format("the G-code is by {}, and {} is {}: give the program that made it as --slicer-path",
+                        origin.name, slicer.program.string(), slicer_name)
+          : "it has to be the only object on the plate, as it stands in the file: not turned, scaled, "
+            "mirrored, cut or moved; a project saved as 3MF keeps its place");
+}
+
+// Without them the slicer would take its defaults, or stumble.
+void require_settings_in(const std::string& gcode, const HookOptions& options) {
+  if (setting_in(gcode, "layer_height")) return;
+  throw InputError(
+      options.gcode.string() + ": the slicer's settings are not in it, so it cannot be sliced again",
+      "switch off whatever takes the last lines of the G-code away, or leave out --model");
+}
+
+bool is_project(const fs::path& model) {
+  return ::strcasecmp(model.extension().c_str(), ".3mf") == 0;
 }
 
 std::string figure(const char* name, const std::optional<double>& before, const std::optional<double>& after,
@@ -122,25 +125,26 @@ std::string comments_for(const HookReport& report) {
 void slice_forms(const std::string& original, const HookOptions& options, const fs::path& scratch,
                  HookReport& report, JobLog& log) {
   const Slicer slicer = slicer_of(report.origin, options);
+  require_settings_in(original, options);
   const std::vector<PrintForm> hollowed = forms_to_try(options.form, slicer.kind);
   // A slicer tells G-code by its ending, and the file that a script gets may have another.
   const fs::path settings = scratch / "settings.gcode";
   write_bytes(original, settings);
-  const bool is_project = options.hollow.model.extension() == ".3mf";
   const FormJob job{.slicer = slicer,
                     .settings = {{settings}},
                     .hollow = options.hollow,
                     .modifier_infill_percent = options.modifier_infill_percent,
-                    .keep_place = is_project,
+                    .keep_place = is_project(options.hollow.model),
                     .scratch = scratch};
   const std::vector<ExtrusionMove> moves = extrusion_moves(original);
-  SlicedForm solid = slice_form(PrintForm::solid, job, log);
-  require_match(moves, solid, options);
+  const SlicedForm solid = slice_solid(job, log);
+  log.stage("compare");
+  require_match(moves, solid, slicer, report.origin, options);
   report.forms.front().slicer_seconds = solid.slicer_seconds;
   try {
-    for (const PrintForm form : hollowed) {
-      report.forms.push_back(slice_form(form, job, log));
-      require_same_place(report.forms.back(), moves);
+    for (SlicedForm& form : slice_hollowed(hollowed, job, log)) {
+      require_same_place(form, moves);
+      report.forms.push_back(std::move(form));
     }
   } catch (const NothingToRemoveError& error) {
     // Not a failure of the print: the script may stand in the settings for models of any size.
@@ -154,10 +158,12 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
 std::string new_content(const std::string& original, const HookReport& report) {
   if (report.chosen == 0) return with_comments(original, comments_for(report));
   std::string gcode = with_setting_of(read_text(report.forms[report.chosen].gcode), original, kPostProcess);
-  return with_comments(gcode, comments_for(report));
+  return with_comments(with_thumbnails_of(std::move(gcode), original), comments_for(report));
 }
 
-HookReport annotate_or_replace(const HookOptions& options, Monitor& monitor) {
+}  // namespace
+
+HookReport run_hook(const HookOptions& options, Monitor& monitor) {
   if (std::getenv(kSlicedByVariable) != nullptr) {
     throw UsageError("the hook was called by a slicer that aerate itself runs",
                      "remove it from the slicer's own default settings");
@@ -165,6 +171,7 @@ HookReport annotate_or_replace(const HookOptions& options, Monitor& monitor) {
   JobLog log(monitor);
   HookReport report;
   report.gcode = options.gcode;
+  log.stage("read");
   const std::string original = read_gcode(options.gcode);
   report.origin = origin_of(original);
   report.forms.push_back({.form = PrintForm::solid,
@@ -179,33 +186,13 @@ HookReport annotate_or_replace(const HookOptions& options, Monitor& monitor) {
   } else {
     slice_forms(original, options, scratch.path(), report, log);
   }
+  log.stage("write");
   const std::string content = new_content(original, report);
   log.check_interrupted();
   pending.commit_text(content);
   report.stages = log.finish();
   report.notices = log.notices();
   return report;
-}
-
-// A slicer shows what a failing script wrote in a dialog: the first line says what failed, the last line of a
-// program's output mostly why.
-std::string on_one_line(std::string text) {
-  while (text.ends_with('\n')) text.pop_back();
-  const std::size_t first_end = text.find('\n');
-  if (first_end == std::string::npos) return text;
-  return text.substr(0, first_end) + " ... " + text.substr(text.rfind('\n') + 1);
-}
-
-}  // namespace
-
-HookReport run_hook(const HookOptions& options, Monitor& monitor) {
-  try {
-    return annotate_or_replace(options, monitor);
-  } catch (const Error& error) {
-    std::string text = on_one_line(error.what());
-    if (!error.hint().empty()) text += "; " + error.hint();
-    throw Error(error.code(), text);
-  }
 }
 
 }  // namespace aerate

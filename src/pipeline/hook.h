@@ -29,7 +29,7 @@ struct HookReport {
 
 // A slicer's post-processing script. Re-slices the solid model with the settings that the G-code embeds; only
 // if this gives the same extrusions, hollows the model, re-slices it and replaces the G-code by the best. The
-// file gets a block of comments. Whatever is thrown, its content is what it was; messages are one line.
+// file gets a block of comments. Whatever is thrown, its content is what it was.
 HookReport run_hook(const HookOptions& options, Monitor& monitor);
 
 }  // namespace aerate

@@ -26,6 +26,31 @@ void write_solid_model(const FormJob& job, const std::filesystem::path& path, Mo
   write_mesh(load_model(job.hollow.model, job.hollow.load).mesh, path, MeshFormat::stl);
 }
 
+// The model's file in the form's folder.
+std::filesystem::path model_file(PrintForm form, const FormJob& job) {
+  const std::string ending = form == PrintForm::modifiers ? ".3mf" : ".stl";
+  return folder_of(form, job) / (job.hollow.model.stem().string() + ending);
+}
+
+SlicedForm slice_file(PrintForm form, std::filesystem::path model, const FormJob& job, Monitor& monitor) {
+  monitor.check_interrupted();
+  monitor.stage(fmt::format("slice {}", name_of(form)));
+  SlicedForm sliced;
+  sliced.form = form;
+  const std::filesystem::path folder = model.parent_path();
+  sliced.gcode = folder / "out.gcode";
+  const auto begin = std::chrono::steady_clock::now();
+  sliced.figures = slice(job.slicer,
+                         {.model = std::move(model),
+                          .gcode = sliced.gcode,
+                          .settings = job.settings,
+                          .keep_place = job.keep_place,
+                          .scratch = folder},
+                         monitor);
+  sliced.slicer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return sliced;
+}
+
 }  // namespace
 
 const char* name_of(PrintForm form) {
@@ -53,37 +78,28 @@ std::vector<PrintForm> forms_to_try(FormChoice choice, SlicerKind slicer) {
   return {PrintForm::voids};
 }
 
-SlicedForm slice_form(PrintForm form, const FormJob& job, Monitor& monitor) {
-  const std::filesystem::path folder = folder_of(form, job);
-  const std::string name = job.hollow.model.stem().string();
-  SlicedForm sliced;
-  sliced.form = form;
-  sliced.gcode = folder / "out.gcode";
-  std::filesystem::path model = folder / (name + (form == PrintForm::modifiers ? ".3mf" : ".stl"));
-  if (form == PrintForm::solid) {
-    write_solid_model(job, model, monitor);
-  } else {
+SlicedForm slice_solid(const FormJob& job, Monitor& monitor) {
+  std::filesystem::path model = model_file(PrintForm::solid, job);
+  write_solid_model(job, model, monitor);
+  return slice_file(PrintForm::solid, std::move(model), job, monitor);
+}
+
+std::vector<SlicedForm> slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
+                                       Monitor& monitor) {
+  const HollowedModel hollowed = carve_model(job.hollow, monitor);
+  std::vector<SlicedForm> all;
+  for (const PrintForm form : forms) {
     HollowOptions options = job.hollow;
-    options.output = model;
+    options.output = model_file(form, job);
     if (form == PrintForm::modifiers) {
       const bool is_orca = job.slicer.kind == SlicerKind::orca_slicer;
       options.modifiers = {is_orca ? ThreeMfFlavor::orca : ThreeMfFlavor::prusa, job.modifier_infill_percent};
     }
-    sliced.hollow = hollow(options, monitor);
+    HollowReport report = write_hollowed(hollowed, options, monitor);
+    all.push_back(slice_file(form, options.output, job, monitor));
+    all.back().hollow = std::move(report);
   }
-  monitor.check_interrupted();
-
-  monitor.stage(fmt::format("slice {}", name_of(form)));
-  const auto begin = std::chrono::steady_clock::now();
-  sliced.figures = slice(job.slicer,
-                         {.model = std::move(model),
-                          .gcode = sliced.gcode,
-                          .settings = job.settings,
-                          .keep_place = job.keep_place,
-                          .scratch = folder},
-                         monitor);
-  sliced.slicer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return sliced;
+  return all;
 }
 
 double filament_saved(const GcodeFigures& solid, const GcodeFigures& other) {

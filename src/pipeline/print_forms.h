@@ -49,8 +49,13 @@ struct FormJob {
 // The forms to try. Throws UsageError for modifiers with a slicer that takes none.
 std::vector<PrintForm> forms_to_try(FormChoice choice, SlicerKind slicer);
 
-// Makes a form's model, checked as any output, and slices it. Throws what hollow() and slice() throw.
-SlicedForm slice_form(PrintForm form, const FormJob& job, Monitor& monitor);
+// Slices the model as it is. Throws what load_model() and slice() throw.
+SlicedForm slice_solid(const FormJob& job, Monitor& monitor);
+
+// Hollows the model once, writes it in these forms, each checked as any output, and slices them. Throws what
+// hollow() and slice() throw.
+std::vector<SlicedForm> slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
+                                       Monitor& monitor);
 
 // Filament as the slicer gives it, in a unit that both have; fraction of `solid` that `other` saves. Throws
 // FailureError if the slicer gives none.

@@ -25,7 +25,9 @@ std::string saving_infill(const std::optional<double>& infill) {
 }
 
 constexpr const char* kOtherWays =
-    "print the voids as modifier volumes of 0 % infill instead, which have no walls, or give --force";
+    "--as modifiers -o MODEL.3mf makes them volumes of 0 % infill, which have no walls and save at any "
+    "infill; "
+    "--force writes these voids all the same";
 
 [[noreturn]] void refuse_all(const PackingLimits& limits, const PrintSettings& settings,
                              const std::optional<double>& least_radius) {

@@ -175,7 +175,7 @@ Mesh read_back(const std::filesystem::path& path, MeshFormat format, Monitor& mo
       return read_written_obj(path, monitor);
     case MeshFormat::three_mf:
       monitor.check_interrupted();
-      return load_model(path).mesh;
+      return load_model(path, {.unit = {}, .other_volumes = OtherVolumes::take_as_bodies}).mesh;
   }
   fail(path, "no reader for this format");
 }

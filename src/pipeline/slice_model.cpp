@@ -1,15 +1,53 @@
 #include "pipeline/slice_model.h"
 
+#include <string>
+#include <strings.h>
+#include <system_error>
 #include <utility>
 
+#include "core/error.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
+namespace {
+
+void require_other_than_settings(const SliceModelOptions& options) {
+  for (const std::filesystem::path& file : options.settings.files) {
+    std::error_code none;
+    if (!std::filesystem::equivalent(file, options.output, none)) continue;
+    throw UsageError(options.output.string() + ": the output is a file of settings", "give another name");
+  }
+}
+
+// A slip such as `-o part.stl` would put G-code where a model is looked for.
+void require_no_models_name(const std::filesystem::path& output) {
+  for (const char* ending : {".stl", ".3mf", ".obj", ".ply", ".off"}) {
+    if (::strcasecmp(output.extension().c_str(), ending) == 0)
+      throw UsageError(output.string() + ": a model's name, and what is written is G-code",
+                       "give a name such as " + output.stem().string() + ".gcode");
+  }
+}
+
+// Hollowing is quick beside slicing, and says sooner that nothing can be removed; then, if the form is left
+// open, the solid model is all there is.
+std::vector<SlicedForm> slice_what_can_be_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
+                                                   FormChoice choice, JobLog& log) {
+  try {
+    return slice_hollowed(forms, job, log);
+  } catch (const NothingToRemoveError& error) {
+    if (choice != FormChoice::automatic) throw;
+    log.notice(std::string(error.what()) + "; the solid model is what was written");
+    return {};
+  }
+}
+
+}  // namespace
 
 SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
+  require_no_models_name(options.output);
   require_other_file(options.hollow.model, options.output);
   SliceReport report;
   report.model = options.hollow.model;
@@ -17,6 +55,7 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   report.choice = options.form;
   report.slicer = find_slicer(options.slicer, options.slicer_path);
   require_settings(options.settings);
+  require_other_than_settings(options);
   const std::vector<PrintForm> hollowed = forms_to_try(options.form, options.slicer);
 
   JobLog log(monitor);
@@ -29,15 +68,13 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
                     .hollow = options.hollow,
                     .modifier_infill_percent = options.modifier_infill_percent,
                     .scratch = scratch.path()};
-  // Hollowing is quick beside slicing, and says sooner that nothing can be removed.
-  std::vector<SlicedForm> forms;
-  forms.reserve(hollowed.size() + 1);
-  for (const PrintForm form : hollowed) forms.push_back(slice_form(form, job, log));
-  forms.insert(forms.begin(), slice_form(PrintForm::solid, job, log));
-  report.forms = std::move(forms);
-  report.chosen = choose_form(report.forms, options.form);
-  if (report.chosen == 0)
-    log.notice("no hollowed form takes less filament than the solid model, so that is what was written");
+  report.forms = slice_what_can_be_hollowed(hollowed, job, options.form, log);
+  report.forms.insert(report.forms.begin(), slice_solid(job, log));
+  if (report.forms.size() > 1) {
+    report.chosen = choose_form(report.forms, options.form);
+    if (report.chosen == 0)
+      log.notice("no hollowed form takes less filament than the solid model, so that is what was written");
+  }
 
   pending.commit_text(read_text(report.forms[report.chosen].gcode));
   report.stages = log.finish();

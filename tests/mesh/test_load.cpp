@@ -497,6 +497,52 @@ TEST_F(Load, SupportObjectsOf3mfAreLeftOut) {
   EXPECT_EQ(model.mesh.triangles.size(), 12u);
 }
 
+// A package as slicers write it: with files of their own, and a relation to a thumbnail that is not there.
+std::string slicer_project(const std::string& config_name, const std::string& config) {
+  return test::make_zip({{"[Content_Types].xml",
+                          R"(<?xml version="1.0" encoding="UTF-8"?>
+<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
+<Default Extension="png" ContentType="image/png"/></Types>)"},
+                         {"_rels/.rels",
+                          R"(<?xml version="1.0" encoding="UTF-8"?>
+<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
+<Relationship Target="/3D/3dmodel.model" Id="rel-1"
+ Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+<Relationship Target="/Metadata/thumbnail.png" Id="rel-2"
+ Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/></Relationships>)"},
+                         {"3D/3dmodel.model", model_xml("millimeter", object_xml(1, mesh_xml(odd_box())),
+                                                        R"(<item objectid="1"/>)")},
+                         {config_name, config}});
+}
+
+TEST_F(Load, ProjectsOfSlicers) {
+  const auto prusa = [](const std::string& metadata) {
+    return slicer_project("Metadata/Slic3r_PE_model.config",
+                          R"(<config><object id="1"><volume firstid="0" lastid="11">)"
+                          R"(<metadata type="volume" key="name" value="Box"/>)" +
+                              metadata + "</volume></object></config>");
+  };
+  const auto orca = [](const std::string& subtype) {
+    return slicer_project("Metadata/model_settings.config",
+                          R"(<config><object id="2"><part id="1" subtype=")" + subtype +
+                              R"("><metadata key="name" value="Box"/></part></object></config>)");
+  };
+  const std::string type = R"(<metadata type="volume" key="volume_type" value=")";
+  for (const std::string& project : {prusa(type + R"(ModelPart"/>)"), prusa(""), orca("normal_part")})
+    expect_same_corners(load("project.3mf", project).mesh, odd_box());
+  // In the package these look like bodies of the model.
+  for (const std::string& project :
+       {prusa(type + R"(ParameterModifier"/>)"), prusa(type + R"(NegativeVolume"/>)"),
+        prusa(R"(<metadata type="volume" key="modifier" value="1"/>)"), orca("modifier_part"),
+        orca("support_blocker")}) {
+    const std::string message = input_error("project.3mf", project);
+    EXPECT_TRUE(contains(message, "a volume that is not part of the model")) << message;
+    EXPECT_TRUE(contains(message, "'Box'")) << message;
+  }
+}
+
 TEST_F(Load, Bad3mf) {
   const std::string good =
       make_3mf(model_xml("millimeter", object_xml(1, mesh_xml(odd_box())), R"(<item objectid="1"/>)"));

@@ -212,6 +212,43 @@ TEST_F(Hook, RefusesWithoutTheSlicer) {
       contains(expect_refused(hook({"--model", model_, "--slicer-path", model_}), 2), "not a program"));
 }
 
+TEST_F(Hook, SaysWhichSlicerMadeTheGcodeIfThatIsWhatDiffers) {
+  fake_.hands_out("solid", fake_gcode(1000, 2.5));
+  write_gcode(fake_gcode(1000, 0, "PrusaSlicer 2.9.1"));
+  const std::string message = expect_refused(hook(with_model()), 3);
+  EXPECT_TRUE(contains(message, "the G-code is by PrusaSlicer 2.9.1, and ")) << message;
+  EXPECT_TRUE(contains(message, "is PrusaSlicer 2.5.0: give the program")) << message;
+}
+
+TEST_F(Hook, RefusesGcodeWithoutSettings) {
+  std::string text = fake_gcode(1000);
+  text.resize(text.find("; prusaslicer_config = begin"));
+  write_gcode(text);
+  EXPECT_TRUE(contains(expect_refused(hook(with_model()), 3), "settings are not in it"));
+}
+
+TEST_F(Hook, RefusesOptionsInOneLine) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--wal", "1"}, {"--wall", "-1"}, {"--min-radius", "9", "--max-radius", "8"}})
+    EXPECT_TRUE(contains(expect_refused(hook(options), 2), "; ")) << options.front();
+}
+
+TEST_F(Hook, RefusesWithoutAPlaceForTemporaryFiles) {
+  const std::string message = expect_refused(run(command(with_model()), {{"TMPDIR", "/none"}}), 1);
+  EXPECT_TRUE(contains(message, "temporary folder can be made in /none: No such file"));
+}
+
+TEST_F(Hook, KeepsThePicturesForThePrintersDisplay) {
+  const std::string picture = "; thumbnail begin 16x16 8\n; iVBORw0K\n; thumbnail end\n";
+  std::string text = fake_gcode(1000);
+  text.insert(text.find('\n') + 1, "\n;\n" + picture + ";\n");
+  write_gcode(text);
+  ASSERT_EQ(hook(with_model()).exit_code, 0);
+  const std::string after = read_bytes(gcode());
+  EXPECT_TRUE(contains(after, "; aerate_result = modifiers\n"));
+  EXPECT_TRUE(contains(after, picture));
+}
+
 TEST_F(Hook, RefusesAMissingModelAndAMissingFile) {
   expect_refused(hook({"--model", folder_.path() / "none.stl", "--slicer-path", fake_.program()}), 3);
   const ProcessResult result = run({AERATE_EXECUTABLE, "hook", folder_.path() / "none.gcode"});

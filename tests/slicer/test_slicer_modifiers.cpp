@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -82,6 +85,51 @@ TEST_F(Modifiers, PawnTakesLess) {
 
 TEST_F(Modifiers, BunnyTakesLess) {
   expect_less("bunny", sample("bunny.stl", 0.5F));
+}
+
+// How far from the axis the nearest extrusion is, by height in hundredths of a millimetre.
+std::map<long, double> empty_radii(const std::vector<ExtrusionMove>& moves, double x, double y) {
+  std::map<long, double> radii;
+  for (const ExtrusionMove& move : moves) {
+    const double dx = move.x - move.from_x, dy = move.y - move.from_y;
+    const double along =
+        ((x - move.from_x) * dx + (y - move.from_y) * dy) / std::max(dx * dx + dy * dy, 1e-12);
+    const double t = std::clamp(along, 0.0, 1.0);
+    const double distance = std::hypot(move.from_x + t * dx - x, move.from_y + t * dy - y);
+    const auto [at, is_new] = radii.try_emplace(std::lround(100 * move.z), distance);
+    if (!is_new) at->second = std::min(at->second, distance);
+  }
+  return radii;
+}
+
+// The height over which the empty space in a print narrows from 6.5 to 3.2 mm round the axis, mm.
+double height_of_narrowing(const std::map<long, double>& radii) {
+  long wide = 0, narrow = 0;
+  for (const auto& [height, radius] : radii) {
+    if (radius >= 6.5) wide = height;
+    if (radius >= 3.2) narrow = height;
+  }
+  EXPECT_GT(wide, 0);
+  return static_cast<double>(narrow - wide) / 100;
+}
+
+TEST_F(Modifiers, CeilingsUnderModifiersHaveRoofs) {
+  // One void of r = 10 in the middle. What the slicer leaves empty narrows as the void does: by 45 degrees
+  // under a roof, so over 3.3 mm; over 1.9 mm in a sphere.
+  const auto block = model("block.stl", make_box({0, 0, 0}, {22.6F, 22.6F, 28}));
+  const auto narrowing = [&](const std::string& bridge) {
+    const auto modified = hollow(block, {"--as", "modifiers", "--max-voids", "1", "--bridge", bridge});
+    const auto gcode = folder_.path() / "out.gcode";
+    slice_with_prusa(modified, gcode,
+                     {"--fill-density", "80%", "--fill-pattern", "rectilinear", "--layer-height", "0.2",
+                      "--skirts", "0", "--center", "50,50"});
+    return height_of_narrowing(empty_radii(extrusion_moves(read_bytes(gcode)), 50, 50));
+  };
+  const double roofed = narrowing("5"), sphere = narrowing("30");
+  std::printf("the empty space narrows over %.2f mm under a roof, over %.2f mm in a sphere\n", roofed,
+              sphere);
+  EXPECT_GT(roofed, 3.0);
+  EXPECT_LT(sphere, 2.4);
 }
 
 TEST_F(Modifiers, InfillInsideIsTheOneAskedFor) {
