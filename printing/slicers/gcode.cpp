@@ -159,9 +159,10 @@ class Interpreter {
     const double begin = std::atan2(from_y - centre_y, from_x - centre_x);
     double angle = std::atan2(axes_[1] - centre_y, axes_[0] - centre_x) - begin;
     if (turn_ * angle <= 0) angle += turn_ * kFullTurn;
-    const double chords = std::clamp(std::ceil(std::abs(angle) * radius / kLongestChord), 1.0, 1e4);
+    const auto chords =
+        static_cast<int>(std::clamp(std::ceil(std::abs(angle) * radius / kLongestChord), 1.0, 1e4));
     double x = from_x, y = from_y;
-    for (double i = 1; i <= chords; ++i) {
+    for (int i = 1; i <= chords; ++i) {
       const double to = begin + angle * i / chords;
       const double next_x = i == chords ? axes_[0] : centre_x + radius * std::cos(to);
       const double next_y = i == chords ? axes_[1] : centre_y + radius * std::sin(to);

@@ -59,10 +59,12 @@ class Grid {
   void add(std::span<const ExtrusionMove> moves, double sign) {
     for (const ExtrusionMove& move : moves) {
       const double dx = move.x - move.from_x, dy = move.y - move.from_y;
-      const double pieces = std::max(1.0, std::ceil(std::hypot(dx, dy) / kStep));
-      for (double i = 0.5; i < pieces; ++i)
-        add_piece(move.from_x + dx * i / pieces, move.from_y + dy * i / pieces,
-                  sign * move.filament / pieces);
+      const auto pieces = static_cast<std::size_t>(std::max(1.0, std::ceil(std::hypot(dx, dy) / kStep)));
+      const double share = 1 / static_cast<double>(pieces);
+      for (std::size_t i = 0; i < pieces; ++i) {
+        const double t = (static_cast<double>(i) + 0.5) * share;
+        add_piece(move.from_x + dx * t, move.from_y + dy * t, sign * move.filament * share);
+      }
     }
   }
 
