@@ -195,6 +195,9 @@ TEST(DrainageOptions, WrongInput) {
   };
   refused({"--escape-hole", "12,20,-30"}, kUsage, {"outside the model", "(12.00, 20.00, 0.00) mm"});
   refused({"--escape-hole", "25,20,20"}, kUsage, {"inside the model, away from its surface"});
+  // Too near an edge, and where no void is.
+  refused({"--escape-hole", "25,0.3,0"}, kUsage, {"no straight hole leads from", "25.0"});
+  refused({"--escape-hole", "0.2,0.2,40"}, kUsage, {"no straight hole leads from", "--escape-hole"});
   refused({"--escape-hole", "12,20"}, kUsage, {"--escape-hole", "x,y,z"});
   refused({"--hole-diameter", "3"}, kUsage, {"narrower than channels of 3.5 mm", "--hole-diameter"});
   refused({"--channel-diameter", "25", "--hole-diameter", "25"}, kUsage, {"too wide for every void"});
