@@ -41,8 +41,6 @@ constexpr double kLengthWeight = 0.2;  // a millimetre of tube for each millimet
 // the sine of 30 degrees.
 constexpr double kLeastSlope = 0.5;
 
-constexpr double kOnSurface = 1e-4;  // mm
-
 Vec3d normalised(Vec3d v) {
   return v * (1 / length(v));
 }
@@ -82,21 +80,12 @@ HolePlaces::HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mes
       clearance_(clearance),
       outward_(mesh.positions, outward_shells) {}
 
-// Follows the axis from the tube's start to the surface, by as much as is free at each point.
+// Ends the tube where its axis meets the surface.
 bool HolePlaces::reach_surface(EscapeHole& hole) const {
   const Vec3d axis = normalised(hole.tube.end - hole.tube.start);
-  const double longest = longest_hole(request_, limits_);
-  double along = 0;
-  constexpr int kMostSteps = 200;
-  for (int step = 0; step < kMostSteps && along <= longest; ++step) {
-    const double free = clearance_.to_surface(hole.tube.start + axis * along, longest);
-    if (free < kOnSurface) {
-      hole.tube.end = hole.tube.start + axis * along;
-      return along > 0;
-    }
-    along += free;
-  }
-  return false;
+  const auto hit = clearance_.first_hit(hole.tube.start, axis, longest_hole(request_, limits_));
+  if (hit) hole.tube.end = hole.tube.start + axis * *hit;
+  return hit.has_value();
 }
 
 double HolePlaces::showing(Vec3d place) const {

@@ -11,6 +11,51 @@
 namespace aerate {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The nearest facet along a ray, for the walk of a hierarchy.
+struct RayMetric {
+  Vec3d start, direction;
+  double best;
+  kernels::View<const kernels::Facet> facets;
+
+  double limit() const { return best; }
+
+  // Where the ray enters the box, which may be an empty one.
+  double bound(const Box3f& box) const {
+    if (box.lower.x > box.upper.x) return kInfinity;
+    double enters = 0, leaves = kInfinity;
+    const auto clip = [&](double lower, double upper, double from, double along) {
+      if (along == 0) {
+        if (from < lower || from > upper) leaves = -kInfinity;
+        return;
+      }
+      const double a = (lower - from) / along, b = (upper - from) / along;
+      enters = std::max(enters, std::min(a, b));
+      leaves = std::min(leaves, std::max(a, b));
+    };
+    clip(box.lower.x, box.upper.x, start.x, direction.x);
+    clip(box.lower.y, box.upper.y, start.y, direction.y);
+    clip(box.lower.z, box.upper.z, start.z, direction.z);
+    return enters <= leaves ? enters : kInfinity;
+  }
+
+  // After T. Moeller and B. Trumbore, "Fast, minimum storage ray/triangle intersection" (1997).
+  void visit(std::uint32_t i) {
+    const Vec3d a = to_double(facets[i].a);
+    const Vec3d ab = to_double(facets[i].b) - a, ac = to_double(facets[i].c) - a;
+    const Vec3d p = cross(direction, ac);
+    const double determinant = dot(ab, p);
+    if (determinant == 0) return;
+    const Vec3d from_a = start - a;
+    const double u = dot(from_a, p) / determinant;
+    const Vec3d q = cross(from_a, ab);
+    const double v = dot(direction, q) / determinant;
+    const double t = dot(ac, q) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < best) best = t;
+  }
+};
+
 // How far a void reaches beyond its ball at most.
 double reach_of_roofs(std::span<const Sphere> spheres, const Roof& roof) {
   double reach = 0;
@@ -70,13 +115,20 @@ double TubeClearance::to_surface(Vec3d point, double limit) const {
   return std::sqrt(bvh_.view().nearest(point, limit * limit).distance_squared);
 }
 
+std::optional<double> TubeClearance::first_hit(Vec3d start, Vec3d direction, double longest) const {
+  RayMetric metric{start, direction, longest, bvh_.view().facets};
+  bvh_.view().walk(metric);
+  if (metric.best >= longest) return std::nullopt;
+  return metric.best;
+}
+
 Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
-  const kernels::NearestFacet nearest = bvh_.view().nearest(point, std::numeric_limits<double>::infinity());
+  const kernels::NearestFacet nearest = bvh_.view().nearest(point, kInfinity);
   return kernels::nearest_point_on_facet(point, bvh_.view().facets[nearest.facet]).point;
 }
 
 Vec3d TubeClearance::normal_near(Vec3d point) const {
-  const kernels::NearestFacet nearest = bvh_.view().nearest(point, std::numeric_limits<double>::infinity());
+  const kernels::NearestFacet nearest = bvh_.view().nearest(point, kInfinity);
   const kernels::Facet& facet = bvh_.view().facets[nearest.facet];
   const Vec3d a = to_double(facet.a);
   const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);
@@ -85,7 +137,7 @@ Vec3d TubeClearance::normal_near(Vec3d point) const {
 }
 
 bool TubeClearance::keeps_wall(const Tube& tube) const {
-  return keeps_away(tube, tube.radius + limits_.wall, std::numeric_limits<double>::infinity());
+  return keeps_away(tube, tube.radius + limits_.wall, kInfinity);
 }
 
 bool TubeClearance::keeps_wall_on_way_out(const Tube& tube, double slope) const {
@@ -93,7 +145,7 @@ bool TubeClearance::keeps_wall_on_way_out(const Tube& tube, double slope) const 
 }
 
 bool TubeClearance::keeps_away(const Tube& tube, double most, double slope) const {
-  const bool comes_out = slope < std::numeric_limits<double>::infinity();
+  const bool comes_out = slope < kInfinity;
   const double whole = length(tube.end - tube.start);
   // What is asked of a point at this way from the end.
   const auto needed = [&](double left) { return comes_out ? std::min(most, slope * left) : most; };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -27,6 +28,10 @@ class TubeClearance {
 
   // Distance from a point to the model's surface; `limit` if it is farther.
   double to_surface(Vec3d point, double limit) const;
+
+  // How far it is from a point along a direction (unit) to the surface; nullopt if more than `longest`. A ray
+  // through an edge may miss both of its triangles.
+  std::optional<double> first_hit(Vec3d start, Vec3d direction, double longest) const;
 
   // The point of the surface nearest to a point, and the outward normal of the triangle there.
   Vec3d nearest_on_surface(Vec3d point) const;

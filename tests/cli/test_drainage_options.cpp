@@ -74,7 +74,9 @@ TEST(DrainageOptions, ProcessesThatTrapMaterialDrainByThemselves) {
     const bool limits_ceilings = std::string(process) == "metal";
     EXPECT_EQ(contains(report["notices"].dump(), "escape holes of 5 mm lean"), limits_ceilings);
     EXPECT_EQ(!report["ceilings"].is_null(), limits_ceilings);
-    if (limits_ceilings) EXPECT_LE(report["ceilings"]["widest_mm"].get<double>(), 2 + 0.05);
+    if (limits_ceilings) {
+      EXPECT_LE(report["ceilings"]["widest_mm"].get<double>(), 2 + 0.05);
+    }
   }
 }
 
@@ -203,6 +205,24 @@ TEST(DrainageOptions, WrongInput) {
   refused({"--no-drain", "--escape-hole", "12,20,0"}, kUsage,
           {"--escape-hole is for voids that drain", "--drain"});
   refused({"--hole-diameter", "18"}, kNothingToRemove, {"18 mm", "--hole-diameter"});
+}
+
+// A place on the surface from which no tube reaches a void; and one across an edge, which is cut like any
+// other.
+TEST(DrainageOptions, AnEscapeHoleIntoNothing) {
+  const Job job;
+  const auto model = job.input("bar.stl", make_box({0, 0, 0}, {90, 30, 30}));
+  const auto spheres = job.input(
+      "spheres.csv", std::string_view("x,y,z,radius,kind\n15,15,15,8,adaptive\n36,15,15,9,adaptive\n"));
+  const auto command = [&](const std::string& place) {
+    return job.hollow(model, {"--process", "sla", "--spheres", spheres, "--escape-hole", place});
+  };
+  const ProcessResult refused = run(command("80,15,0"));
+  EXPECT_EQ(refused.exit_code, kUsage) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "no straight hole leads from (80.0"));
+  EXPECT_TRUE(contains(refused.err, "--escape-hole"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+  expect_drained(job, json_of(command("15,0.3,0")), 1);
 }
 
 // Real scans: one with a flat base, one with doubled edges and a crack.

@@ -173,6 +173,16 @@ TEST(TubeClearances, ATubeThatComesOutTooObliquelyIsRefused) {
   EXPECT_FALSE(beside.keeps_wall_on_way_out(towards(90), 0.5));
 }
 
+TEST(TubeClearances, WhereARayMeetsTheSurface) {
+  const Mesh box = test::make_box({0, 0, 0}, {40, 40, 40});
+  const std::vector<Sphere> spheres{ball({20, 20, 20}, 5)};
+  const TubeClearance clearance(box, spheres, {.wall = 2, .gap = 1, .min_radius = 1, .max_radius = 5}, 20, 2);
+  EXPECT_NEAR(clearance.first_hit({20, 21, 12}, {0, 0, -1}, 50).value(), 12, 1e-12);
+  EXPECT_NEAR(clearance.first_hit({20, 21, 12}, {0.6, 0, 0.8}, 50).value(), 20 / 0.6, 1e-9);
+  EXPECT_FALSE(clearance.first_hit({20, 21, 12}, {0, 0, -1}, 11).has_value());
+  EXPECT_FALSE(clearance.first_hit({20, 21, 50}, {0, 0, 1}, 100).has_value());
+}
+
 class PlanDrainage : public testing::Test {
  protected:
   void pack(const Mesh& mesh, const Roof& roof = {}) {

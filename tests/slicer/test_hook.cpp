@@ -171,7 +171,11 @@ TEST_F(Hook, RefusesAFormThatTheSlicerPutElsewhere) {
 TEST_F(Hook, RefusesAProcessThatPrintsNoFilament) {
   std::vector<std::string> options = with_model();
   options.insert(options.end(), {"--process", "sla"});
-  EXPECT_TRUE(contains(expect_refused(hook(options), 2), "process sla prints no filament"));
+  const ProcessResult result = hook(options);
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_TRUE(contains(result.err, "process sla prints no filament"));
+  EXPECT_EQ(read_bytes(gcode()), before_);
+  expect_nothing_left();
 }
 
 TEST_F(Hook, RefusesBinaryGcode) {
