@@ -274,6 +274,26 @@ TEST(Adaptive, LeavesOverlapsOfPartsAlone) {
   expect_limits_held(parts, pack(parts, {0.5, 0.5, 0.7, kInfinity}));
 }
 
+TEST(Adaptive, HoldsItsLimitsInOddModels) {
+  const Mesh far_away = test::make_box({123456, -98765, 100000}, {123486, -98745, 100012});
+  const Mesh needle = test::make_box({0, 0, 0}, {2.5f, 2.5f, 300});
+  // A ball within a ball within a ball: the middle one is hollow.
+  const Mesh shells = test::join(
+      test::join(test::make_uv_sphere(15, 20, 40), test::turned_inside_out(test::make_uv_sphere(10, 16, 32))),
+      test::make_uv_sphere(8, 16, 32));
+  // A sheet without thickness in a block, and facets without area.
+  Mesh flawed = test::make_box({0, 0, 0}, {20, 20, 20});
+  const auto first = static_cast<std::uint32_t>(flawed.positions.size());
+  flawed.positions.insert(flawed.positions.end(), {{5, 5, 10}, {15, 5, 10}, {10, 15, 10}});
+  for (const Triangle& t : std::vector<Triangle>{{0, 1, 2}, {0, 2, 1}, {0, 0, 1}, {2, 2, 2}, {0, 1, 0}}) {
+    flawed.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  for (const Mesh& mesh : {far_away, needle, shells, flawed}) {
+    expect_limits_held(mesh, pack(mesh, {0, 0, 0.9, kInfinity}));
+    expect_limits_held(mesh, pack(mesh, {0.3, 0.2, 0.6, 1.2}));
+  }
+}
+
 TEST(Adaptive, KeepsTheWallToACrackThinnerThanAnyCell) {
   // A slit 1 micrometre wide, from above almost to the ground.
   const Mesh block = test::make_box({0, 0, 0}, {20, 20, 20});
