@@ -239,9 +239,11 @@ class DrainedCarver {
     for (int step = 0; step < kMostSteps && !pending.empty(); ++step, tolerance *= kFinerStep) {
       monitor_.check_interrupted();
       std::vector<Sphere> wanted;
+      wanted.reserve(pending.size());
       for (const std::size_t i : pending) wanted.push_back(balls_[i]);
       ladder.prepare(wanted, tolerance);
       std::vector<const BallTemplate*> templates;
+      templates.reserve(pending.size());
       for (const Sphere& ball : wanted) templates.push_back(&ladder[ladder.level_for(ball, tolerance)]);
       std::vector<char> is_done(pending.size(), 0);
       tbb::parallel_for(std::size_t{0}, pending.size(), [&](std::size_t i) {

@@ -180,6 +180,7 @@ std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls,
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
   std::vector<EscapeHole> holes;
+  holes.reserve(ranked.size());
   for (const Ranked& found : ranked) holes.push_back(found.place->hole);
   return holes;
 }
@@ -241,10 +242,11 @@ std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std:
   std::vector<EscapeHole> holes;
   for (const std::uint32_t from : balls) {
     const Sphere& ball = spheres_[from];
-    constexpr int kPoints = 4;
-    for (int i = 0; i < 1 + 6 * kPoints; ++i) {
+    constexpr int kDistances = 4;
+    for (int i = 0; i < 1 + 6 * kDistances; ++i) {
       // The centre, and points around it along the axes.
-      const double shift = ball.radius * 0.85 * ((i + 5) / 6) / kPoints;
+      const int distance_index = (i + 5) / 6;
+      const double shift = ball.radius * 0.85 * distance_index / kDistances;
       constexpr std::array<Vec3d, 6> kAxes{Vec3d{0, 0, -1}, Vec3d{0, 0, 1}, Vec3d{1, 0, 0},
                                            Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 0}};
       const Vec3d inside = ball.centre + kAxes[static_cast<std::size_t>((i + 5) % 6)] * shift;

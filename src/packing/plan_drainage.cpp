@@ -546,6 +546,7 @@ std::vector<std::pair<double, Planner::Members>> Planner::upright_pools() const 
     members.push_back(i);
   }
   std::vector<std::pair<double, Members>> sorted;
+  sorted.reserve(pools.size());
   for (auto& [root, pool] : pools) sorted.push_back(std::move(pool));
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

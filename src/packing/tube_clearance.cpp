@@ -25,19 +25,21 @@ struct RayMetric {
   double bound(const Box3f& box) const {
     if (box.lower.x > box.upper.x) return kInfinity;
     double enters = 0, leaves = kInfinity;
-    const auto clip = [&](double lower, double upper, double from, double along) {
+    const auto clip = [&](double least, double most, double from, double along) {
       if (along == 0) {
-        if (from < lower || from > upper) leaves = -kInfinity;
+        if (from < least || from > most) leaves = -kInfinity;
         return;
       }
-      const double a = (lower - from) / along, b = (upper - from) / along;
+      const double a = (least - from) / along, b = (most - from) / along;
       enters = std::max(enters, std::min(a, b));
       leaves = std::min(leaves, std::max(a, b));
     };
-    clip(box.lower.x, box.upper.x, start.x, direction.x);
-    clip(box.lower.y, box.upper.y, start.y, direction.y);
-    clip(box.lower.z, box.upper.z, start.z, direction.z);
-    return enters <= leaves ? enters : kInfinity;
+    const Vec3d lower = to_double(box.lower), upper = to_double(box.upper);
+    clip(lower.x, upper.x, start.x, direction.x);
+    clip(lower.y, upper.y, start.y, direction.y);
+    clip(lower.z, upper.z, start.z, direction.z);
+    if (enters > leaves) return kInfinity;
+    return enters;
   }
 
   // After T. Moeller and B. Trumbore, "Fast, minimum storage ray/triangle intersection" (1997).
@@ -71,8 +73,7 @@ double tube_spacing(double radius, double other_radius) {
 
 TubeClearance::TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
                              double longest, double widest_radius)
-    : mesh_(mesh),
-      bvh_(mesh.positions, mesh.triangles),
+    : bvh_(mesh.positions, mesh.triangles),
       spheres_(spheres),
       limits_(limits),
       longest_(longest),

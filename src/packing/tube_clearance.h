@@ -22,7 +22,7 @@ double tube_spacing(double radius, double other_radius);
 // that it does not join and from tubes that were placed before.
 class TubeClearance {
  public:
-  // `longest` is the length that no channel exceeds, mm. Mesh and spheres must outlive this.
+  // `longest` is the length that no channel exceeds, mm. The spheres must outlive this.
   TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
                 double longest, double widest_radius);
 
@@ -70,7 +70,6 @@ class TubeClearance {
   bool keeps_away(const Tube& tube, double most, double slope) const;
   std::uint64_t cell_of(Vec3d point, int dx, int dy, int dz) const;
 
-  const Mesh& mesh_;
   kernels::HostTriangleBvh bvh_;
   std::span<const Sphere> spheres_;
   PackingLimits limits_;
