@@ -290,7 +290,8 @@ TEST(Command, QuietSaysNothingUnlessSomethingIsWrong) {
 TEST(Command, PackWritesATable) {
   const Job job;
   const auto table = job.output("spheres.csv");
-  const ProcessResult result = run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", table});
+  const ProcessResult result =
+      run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", table, "--max-radius", "3.5"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const std::string csv = read_bytes(table);
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "x,y,z,radius,kind");

@@ -1,7 +1,7 @@
-#include <cmath>
 #include <gtest/gtest.h>
-#include <numbers>
+#include <optional>
 
+#include "printing/economics.h"
 #include "printing/materials.h"
 #include "printing/processes.h"
 
@@ -46,11 +46,16 @@ TEST(Processes, WhatLeavesMaterialInVoidsHasChannelsThatFitIntoThem) {
   }
 }
 
-TEST(Processes, TheLargestVoidOfFdmHasACeilingThatCanBeBridged) {
+TEST(Processes, TheLargestVoidOfFdmPaysAtAnInfillOf15Percent) {
   const Process& fdm = *find_process("fdm");
-  const double widest =
-      2 * fdm[Limit::max_radius]->value * std::cos(fdm[Limit::overhang]->value * std::numbers::pi / 180);
-  EXPECT_LE(widest, fdm[Limit::bridge]->value);
+  PrintSettings settings;
+  settings.infill = 0.15;
+  const std::optional<double> least = break_even_radius(settings);
+  ASSERT_TRUE(least.has_value());
+  EXPECT_GT(fdm[Limit::max_radius]->value, *least);
+  // And its ceilings are limited.
+  EXPECT_TRUE(fdm[Limit::overhang].has_value());
+  EXPECT_TRUE(fdm[Limit::bridge].has_value());
 }
 
 TEST(Processes, LimitsAreFoundByTheirNames) {
