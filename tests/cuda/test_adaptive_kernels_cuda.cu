@@ -149,6 +149,7 @@ TEST_F(AdaptiveKernelsCuda, QueriesOfTheField) {
 template <typename Executor>
 std::vector<std::vector<std::uint32_t>> cells_of_grid(const Executor& executor, const Job& job) {
   Packed<Executor> packed(executor, job);
+  packed.grid.reset(job.input.box, kReach / 3, kGap, 64);  // cells so small that some lie within balls
   const BallGridView<BallShape> grid = packed.grid.view();
   const auto entries = executor.download(View<const BallEntry>(grid.entries));
   std::vector<std::vector<std::uint32_t>> cells;
