@@ -2,39 +2,13 @@
 
 #include <cstdint>
 #include <limits>
-#include <numeric>
+
+#include "core/disjoint_sets.h"
 
 namespace aerate {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-// Union-find over vertices; the root of a set is its smallest member.
-class VertexSets {
- public:
-  explicit VertexSets(const Mesh& mesh) : parents_(mesh.positions.size()) {
-    std::iota(parents_.begin(), parents_.end(), 0u);
-    for (const Triangle& t : mesh.triangles) {
-      join(t[0], t[1]);
-      join(t[0], t[2]);
-    }
-  }
-
-  std::uint32_t root(std::uint32_t vertex) {
-    while (parents_[vertex] != vertex) vertex = parents_[vertex] = parents_[parents_[vertex]];
-    return vertex;
-  }
-
- private:
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a < b) parents_[b] = a;
-    if (b < a) parents_[a] = b;
-  }
-
-  std::vector<std::uint32_t> parents_;
-};
 
 // The shell of each triangle, numbered by first triangle, and their number.
 struct ShellNumbers {
@@ -43,7 +17,11 @@ struct ShellNumbers {
 };
 
 ShellNumbers number_shells(const Mesh& mesh) {
-  VertexSets sets(mesh);
+  DisjointSets sets(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
+  }
   std::vector<std::uint32_t> of_root(mesh.positions.size(), kNone);
   ShellNumbers numbers;
   numbers.of_triangle.reserve(mesh.triangles.size());

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
-#include <numeric>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_scan.h>
+
+#include "core/disjoint_sets.h"
 
 namespace aerate {
 namespace {
@@ -35,29 +36,6 @@ void for_each_side(const Triangle& triangle, std::size_t number, const F& f) {
 bool comes_before(const EdgeUse& a, const EdgeUse& b) {
   return a.high != b.high ? a.high < b.high : a.half_edge < b.half_edge;
 }
-
-// Union-find over triangles whose roots are the smallest members, so that they do not depend on the order.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), std::uint32_t{0});
-  }
-
-  std::uint32_t root(std::uint32_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a < b) parents_[b] = a;
-    if (b < a) parents_[a] = b;
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
 
 }  // namespace
 
@@ -127,7 +105,7 @@ ShellLabels label_shells(const Mesh& mesh, const EdgeUses& uses) {
   for (std::size_t low = 0; low < uses.row_count(); ++low) {
     const std::span<const EdgeUse> row = uses.row(low);
     for (std::size_t i = 1; i < row.size(); ++i) {
-      if (row[i].high == row[i - 1].high) sets.unite(row[i - 1].triangle(), row[i].triangle());
+      if (row[i].high == row[i - 1].high) sets.join(row[i - 1].triangle(), row[i].triangle());
     }
   }
 

@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <queue>
 #include <set>
@@ -14,6 +13,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/top_opening.h"
 #include "packing/hole_places.h"
@@ -72,26 +72,6 @@ std::string shortened(double value) {
   if (text.ends_with('.')) text.pop_back();
   return text;
 }
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parents_(size) {
-    std::iota(parents_.begin(), parents_.end(), 0U);
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  bool join(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    if (a == b) return false;
-    parents_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
 
 class Planner {
  public:

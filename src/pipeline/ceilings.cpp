@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <queue>
 #include <utility>
 #include <vector>
 
+#include "core/disjoint_sets.h"
 #include "core/upright.h"
 #include "pipeline/check_failure.h"
 #include "pipeline/polled_loop.h"
@@ -60,27 +60,7 @@ class Flatness {
 struct Edge {
   std::uint32_t low, high;
   std::uint32_t from, to;
-  std::size_t facet;
-};
-
-// Sets of facets that join along edges.
-class FacetSets {
- public:
-  explicit FacetSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
+  std::uint32_t facet;
 };
 
 std::vector<Ceiling> ceilings_of(const Mesh& mesh, std::span<const Triangle> shell, const Flatness& flatness,
@@ -90,7 +70,7 @@ std::vector<Ceiling> ceilings_of(const Mesh& mesh, std::span<const Triangle> she
     if (flatness.is_ceiling(mesh, t)) facets.push_back(t);
   std::vector<Edge> edges;
   edges.reserve(3 * facets.size());
-  for (std::size_t i = 0; i < facets.size(); ++i) {
+  for (std::uint32_t i = 0; i < facets.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t from = facets[i][k], to = facets[i][(k + 1) % 3];
       edges.push_back({std::min(from, to), std::max(from, to), from, to, i});
@@ -101,7 +81,7 @@ std::vector<Ceiling> ceilings_of(const Mesh& mesh, std::span<const Triangle> she
            std::array<std::size_t, 3>{b.low, b.high, b.facet};
   });
 
-  FacetSets sets(facets.size());
+  DisjointSets sets(facets.size());  // of facets that share edges
   std::vector<Edge> rim;
   for (std::size_t i = 0; i < edges.size();) {
     const bool is_shared =
@@ -120,17 +100,17 @@ std::vector<Ceiling> ceilings_of(const Mesh& mesh, std::span<const Triangle> she
     const Vec3d p = frame.to_frame(to_double(mesh.positions[vertex]));
     return Point{p.x, p.y};
   };
-  for (std::size_t i = 0; i < facets.size(); ++i) {
-    if (sets.find(i) == i) {
+  for (std::uint32_t i = 0; i < facets.size(); ++i) {
+    if (sets.root(i) == i) {
       number[i] = ceilings.size();
       ceilings.emplace_back();
     }
     const Point a = seen(facets[i][0]), b = seen(facets[i][1]), c = seen(facets[i][2]);
-    ceilings[number[sets.find(i)]].area +=
+    ceilings[number[sets.root(i)]].area +=
         0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
   }
   for (const Edge& edge : rim)
-    ceilings[number[sets.find(edge.facet)]].rim.push_back({seen(edge.from), seen(edge.to)});
+    ceilings[number[sets.root(edge.facet)]].rim.push_back({seen(edge.from), seen(edge.to)});
   return ceilings;
 }
 

@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/roof.h"
-#include "mesh/weld.h"
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
 #include "packing/tube_through.h"
@@ -18,23 +17,16 @@
 #include "printing/carve_drained.h"
 #include "tests/support/caught.h"
 #include "tests/support/files.h"
+#include "tests/support/read_back.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace aerate {
 namespace {
 
+using test::as_read_back;
 using test::contains;
 using test::message_of;
-
-// As a file would give it back: vertices welded and numbered in order of first use.
-Mesh as_read_back(const Mesh& mesh) {
-  std::vector<Vec3f> corners;
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t vertex : t) corners.push_back(mesh.positions[vertex]);
-  }
-  return weld(corners);
-}
 
 // A block that drains; a test damages the result, or what is expected of it, and looks whether that is found.
 class CheckDrained : public testing::Test {

@@ -9,26 +9,18 @@
 
 #include "core/error.h"
 #include "core/roof.h"
-#include "mesh/weld.h"
 #include "pipeline/check_output.h"
 #include "printing/carve.h"
 #include "tests/support/caught.h"
+#include "tests/support/read_back.h"
 #include "tests/support/shapes.h"
 
 namespace aerate {
 namespace {
 
+using test::as_read_back;
 using test::contains;
 using test::message_of;
-
-// As a file would give it back: vertices welded and numbered in order of first use.
-Mesh as_read_back(const Mesh& mesh) {
-  std::vector<Vec3f> corners;
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t vertex : t) corners.push_back(mesh.positions[vertex]);
-  }
-  return weld(corners);
-}
 
 // A box with two voids; a test damages it and looks whether that is found.
 class CheckOutput : public testing::Test {

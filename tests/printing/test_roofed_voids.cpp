@@ -8,6 +8,7 @@
 #include "kernels/roof_distance.h"
 #include "printing/carve.h"
 #include "printing/cut_ball.h"
+#include "tests/support/clearance.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shells.h"
 
@@ -29,10 +30,6 @@ Mesh void_surface(const Solid& solid, std::size_t i) {
   return test::turned_inside_out(test::extract(solid.mesh, solid.void_shells[i]));
 }
 
-kernels::Facet facet_of(const Mesh& mesh, const Triangle& t) {
-  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-}
-
 double height_of(const Roof& roof, const Sphere& sphere, Vec3f p) {
   return dot(to_double(p) - sphere.centre, roof.up);
 }
@@ -49,15 +46,15 @@ void expect_good_void(const Mesh& surface, const Roof& roof, const Sphere& spher
     ASSERT_LE(height_of(roof, sphere, p), top);
   }
   for (const Triangle& t : surface.triangles) {
-    double depth = kernels::lateral_depth(roof, sphere.centre, sphere.radius, facet_of(surface, t));
+    double depth = kernels::lateral_depth(roof, sphere.centre, sphere.radius, test::facet_of(surface, t));
     if (roof.shapes(sphere.radius)) {
       double lowest = top;
       for (const std::uint32_t v : t)
         lowest = std::min(lowest, height_of(roof, sphere, surface.positions[v]));
       depth = std::min(depth, top - lowest);
     } else {
-      depth =
-          sphere.radius - std::sqrt(kernels::distance_squared_to_facet(sphere.centre, facet_of(surface, t)));
+      depth = sphere.radius -
+              std::sqrt(kernels::distance_squared_to_facet(sphere.centre, test::facet_of(surface, t)));
     }
     ASSERT_LE(depth, tolerance * (1 + 1e-9));
   }
