@@ -71,6 +71,19 @@ Sliced expect_filament_to_fall_as_reported(const TemporaryFolder& folder, const 
   return sliced;
 }
 
+// The value of a line "name = value" of what the slicer tells about a file; empty if it does not tell it.
+std::string told_by_slicer(const std::filesystem::path& model, const std::string& name) {
+  const ProcessResult result = run({kSlicer, "--info", model});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::istringstream lines(result.out);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(name + " =")) continue;
+    const std::size_t value = line.find_first_not_of(' ', name.size() + 2);
+    return value == std::string::npos ? "" : line.substr(value);
+  }
+  return "";
+}
+
 class Slicer : public testing::Test {
  protected:
   void SetUp() override {
@@ -107,6 +120,22 @@ TEST_F(Slicer, PawnInObjFormat) {
       folder_, std::filesystem::path(AERATE_SAMPLES) / "pawn.obj",
       {"--packing", "adaptive", "--wall", "0.8", "--max-radius", "10", "--min-radius", "1.5"});
   EXPECT_GT(sliced.filament_fraction, 0.1);
+}
+
+TEST_F(Slicer, DrainedVoidsNeedNoRepairAndAreLeftEmpty) {
+  const auto block = model("block.stl", make_box({0, 0, 0}, {30, 28, 26}));
+  for (const char* process : {"sla", "sls", "metal"}) {
+    SCOPED_TRACE(process);
+    const Sliced sliced = expect_filament_to_fall_as_reported(folder_, block, {"--process", process});
+    EXPECT_GT(sliced.filament_fraction, 0.2);
+    const auto hollow = folder_.path() / "hollow.stl";
+    EXPECT_EQ(told_by_slicer(hollow, "manifold"), "yes");
+    // Voids, channels and holes are one surface with the outside: nothing is sealed.
+    EXPECT_EQ(told_by_slicer(hollow, "number_of_parts"), "1");
+    for (const char* repair : {"open_edges", "degenerate_facets", "edges_fixed", "facets_removed",
+                               "facets_reversed", "backwards_edges"})
+      EXPECT_EQ(told_by_slicer(hollow, repair), "");
+  }
 }
 
 TEST_F(Slicer, OverlappingBoxesHaveVoidsOnlyWhereTheSlicerLeavesThem) {
