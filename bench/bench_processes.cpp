@@ -66,7 +66,7 @@ double deeper_than(const Mesh& mesh, double wall) {
     for (std::size_t i = 0; i < points.size(); ++i)
       if (winding[i] == 1) inside.push_back(points[i]);
   }
-  const std::vector<double> distances = distances_to_surface(mesh, inside);
+  const std::vector<double> distances = SurfaceIndex(mesh).distances(inside);
   const auto deep =
       std::count_if(distances.begin(), distances.end(), [&](double distance) { return distance >= wall; });
   return static_cast<double>(deep) * kStep * kStep * kStep;

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "kernels/exec_cpu.h"
 
@@ -30,15 +31,19 @@ Box3d bounding_box(View<const Facet> facets) {
 
 struct HostWinding::Impl {
   TbbExecutor executor;
-  HostBuffer<Facet> facets;
+  HostBuffer<Facet> facets;  // if they are its own
   WindingIndex<TbbExecutor> index;
 };
+
+HostWinding::HostWinding(View<const Facet> facets) : impl_(std::make_unique<Impl>()) {
+  impl_->index = build_winding_index(impl_->executor, facets, bounding_box(facets));
+}
 
 HostWinding::HostWinding(std::span<const Vec3f> positions,
                          std::span<const std::array<std::uint32_t, 3>> triangles)
     : impl_(std::make_unique<Impl>()) {
   impl_->facets = gather_facets(impl_->executor, positions, triangles);
-  const View<const Facet> facets = impl_->facets.view();
+  const View<const Facet> facets = std::as_const(impl_->facets).view();
   impl_->index = build_winding_index(impl_->executor, facets, bounding_box(facets));
 }
 

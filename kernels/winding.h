@@ -232,6 +232,8 @@ Box3d bounding_box(View<const Facet> facets);
 class HostWinding {
  public:
   HostWinding(std::span<const Vec3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
+  // Of facets in host memory, which must outlive this.
+  explicit HostWinding(View<const Facet> facets);
   ~HostWinding();
   HostWinding(HostWinding&&) noexcept;
   HostWinding& operator=(HostWinding&&) noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -15,6 +16,7 @@
 #include "printing/open_ball.h"
 #include "printing/roof_top.h"
 #include "printing/rounding.h"
+#include "printing/star_triangulation.h"
 
 namespace aerate {
 namespace {
@@ -178,7 +180,12 @@ class DrainedCarver {
 
   DrainedSolid carve(const Mesh& outer) {
     open_balls();
-    cut_outer(outer);
+    if (const auto uncut = cut_outer(outer)) {
+      const Vec3d end = plan_.holes[*uncut].tube.end;
+      throw FailureError("the surface cannot be cut for an escape hole near (" + std::to_string(end.x) +
+                             ", " + std::to_string(end.y) + ", " + std::to_string(end.z) + ") mm",
+                         "ask for other places with --escape-hole");
+    }
     for (Part& part : parts_) {
       part.first_vertex = static_cast<std::uint32_t>(solid_.mesh.positions.size());
       for (const Vec3d p : part.surface.positions) solid_.mesh.positions.push_back(to_float(p));
@@ -190,6 +197,37 @@ class DrainedCarver {
     for (std::size_t i = 0; i < plan_.holes.size(); ++i) add_hole(i);
     drop_unused_vertices();
     return std::move(solid_);
+  }
+
+  // Cuts the surface for one hole after the other, so that two may meet the same triangle. The first for
+  // which that fails.
+  std::optional<std::size_t> cut_outer(const Mesh& outer) {
+    constexpr std::uint32_t kNew = std::numeric_limits<std::uint32_t>::max();
+    Mesh mesh = outer;
+    std::vector<std::uint32_t> origins(mesh.triangles.size());
+    std::iota(origins.begin(), origins.end(), 0U);
+    for (std::size_t i = 0; i < plan_.holes.size(); ++i) {
+      monitor_.check_interrupted();
+      const EscapeHole& hole = plan_.holes[i];
+      std::size_t opening = 0;
+      for (std::uint32_t first = 0; first < hole_rings_[i].first; ++opening)
+        first += static_cast<std::uint32_t>(parts_[hole.from].openings[opening].ring.size());
+      const CuttingPrism prism = prism_of(hole.tube, parts_[hole.from].openings[opening]);
+      const auto cut = cut_surface(mesh, triangles_near(mesh, axis_of(prism), reach_of(prism)), prism);
+      if (!cut) return i;
+      for (const std::uint32_t t : cut->removed) {
+        if (origins[t] != kNew) solid_.cut_triangles.push_back(origins[t]);
+      }
+      remove_at(origins, cut->removed);
+      apply(*cut, mesh);
+      origins.resize(mesh.triangles.size(), kNew);
+      hole_sides_.push_back({cut->sides, mesh.positions.size()});
+    }
+    std::sort(solid_.cut_triangles.begin(), solid_.cut_triangles.end());
+    solid_.kept_triangle_count = outer.triangles.size() - solid_.cut_triangles.size();
+    solid_.outer_triangle_count = mesh.triangles.size();
+    solid_.mesh = std::move(mesh);
+    return std::nullopt;
   }
 
  private:
@@ -222,8 +260,8 @@ class DrainedCarver {
   }
 
   // Opens a ball and puts its roof on. False if that takes a finer template.
-  bool make_surface(Part& part, const Sphere& ball, std::span<const Vec3d> directions) const {
-    auto opened = open_ball(shrunk(plan_.roof, ball), directions, part.openings);
+  bool make_surface(Part& part, const Sphere& ball, const StarTriangulation& whole) const {
+    auto opened = open_ball(shrunk(plan_.roof, ball), whole, part.openings);
     if (!opened || opened->nearest < ball.radius - tolerance_ + void_rounding_margin(plan_.roof, ball))
       return false;
     part.surface = std::move(*opened);
@@ -242,13 +280,20 @@ class DrainedCarver {
       wanted.reserve(pending.size());
       for (const std::size_t i : pending) wanted.push_back(balls_[i]);
       ladder.prepare(wanted, tolerance);
-      std::vector<const BallTemplate*> templates;
+      std::map<std::size_t, StarTriangulation> connected;
+      std::vector<const StarTriangulation*> templates;
       templates.reserve(pending.size());
-      for (const Sphere& ball : wanted) templates.push_back(&ladder[ladder.level_for(ball, tolerance)]);
+      for (const Sphere& ball : wanted) {
+        const std::size_t level = ladder.level_for(ball, tolerance);
+        const auto [place, is_new] =
+            connected.try_emplace(level, ladder[level].directions, ladder[level].triangles);
+        if (is_new) place->second.connect();
+        templates.push_back(&place->second);
+      }
       std::vector<char> is_done(pending.size(), 0);
       tbb::parallel_for(std::size_t{0}, pending.size(), [&](std::size_t i) {
         const std::size_t ball = pending[i];
-        is_done[i] = make_surface(parts_[ball], balls_[ball], templates[i]->directions) ? 1 : 0;
+        is_done[i] = make_surface(parts_[ball], balls_[ball], *templates[i]) ? 1 : 0;
       });
       std::vector<std::size_t> left;
       for (std::size_t i = 0; i < pending.size(); ++i) {
@@ -263,39 +308,6 @@ class DrainedCarver {
                            std::to_string(ball.centre.z) + ") mm cannot be meshed within a tolerance of " +
                            std::to_string(tolerance_) + " mm",
                        "raise --tolerance or --gap, or give a smaller --channel-diameter");
-  }
-
-  // Cuts one hole after the other, so that two may meet the same triangle.
-  void cut_outer(const Mesh& outer) {
-    constexpr std::uint32_t kNew = std::numeric_limits<std::uint32_t>::max();
-    Mesh mesh = outer;
-    std::vector<std::uint32_t> origins(mesh.triangles.size());
-    std::iota(origins.begin(), origins.end(), 0U);
-    for (std::size_t i = 0; i < plan_.holes.size(); ++i) {
-      monitor_.check_interrupted();
-      const EscapeHole& hole = plan_.holes[i];
-      std::size_t opening = 0;
-      for (std::uint32_t first = 0; first < hole_rings_[i].first; ++opening)
-        first += static_cast<std::uint32_t>(parts_[hole.from].openings[opening].ring.size());
-      const CuttingPrism prism = prism_of(hole.tube, parts_[hole.from].openings[opening]);
-      const auto cut = cut_surface(mesh, facets_near(mesh, axis_of(prism), reach_of(prism)), prism);
-      if (!cut)
-        throw FailureError("the surface cannot be cut for an escape hole near (" +
-                               std::to_string(hole.tube.end.x) + ", " + std::to_string(hole.tube.end.y) +
-                               ", " + std::to_string(hole.tube.end.z) + ") mm",
-                           "ask for other places with --escape-hole");
-      for (const std::uint32_t t : cut->removed) {
-        if (origins[t] != kNew) solid_.cut_triangles.push_back(origins[t]);
-      }
-      remove_at(origins, cut->removed);
-      apply(*cut, mesh);
-      origins.resize(mesh.triangles.size(), kNew);
-      hole_sides_.push_back({cut->sides, mesh.positions.size()});
-    }
-    std::sort(solid_.cut_triangles.begin(), solid_.cut_triangles.end());
-    solid_.kept_triangle_count = outer.triangles.size() - solid_.cut_triangles.size();
-    solid_.outer_triangle_count = mesh.triangles.size();
-    solid_.mesh = std::move(mesh);
   }
 
   void add(Triangle t) { solid_.mesh.triangles.push_back(t); }
@@ -369,30 +381,17 @@ class DrainedCarver {
 
 }  // namespace
 
-bool can_cut(const FacetsNear& outer, const WayOut& way, std::span<const WayOut> others, const Roof& roof,
-             double tolerance) {
-  const auto prism = [&](const WayOut& out) {
-    return prism_of(out.tube,
-                    opening_of(out.tube, TubeEnd::start, out.ball, roof, sides_of(out.tube, tolerance)));
-  };
-  const CuttingPrism own = prism(way);
-  const std::vector<std::uint32_t> near = outer.find(axis_of(own), reach_of(own));
-  const bool shares_triangles = std::any_of(others.begin(), others.end(), [&](const WayOut& other) {
-    const CuttingPrism cut = prism(other);
-    const std::vector<std::uint32_t> theirs = outer.find(axis_of(cut), reach_of(cut));
-    return std::find_first_of(near.begin(), near.end(), theirs.begin(), theirs.end()) != near.end();
-  });
-  if (!shares_triangles) return cut_surface(outer.mesh(), near, own).has_value();
-  Mesh mesh = outer.mesh();
-  const auto cut_now = [&mesh](const CuttingPrism& cut) {
-    return cut_surface(mesh, facets_near(mesh, axis_of(cut), reach_of(cut)), cut);
-  };
-  for (const WayOut& other : others) {
-    const auto cut = cut_now(prism(other));
-    if (!cut) return false;
-    apply(*cut, mesh);
-  }
-  return cut_now(own).has_value();
+bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const WayOut& way, const Roof& roof,
+                double tolerance) {
+  const CuttingPrism prism =
+      prism_of(way.tube, opening_of(way.tube, TubeEnd::start, way.ball, roof, sides_of(way.tube, tolerance)));
+  return may_be_cut(outer, surface.triangles_near(axis_of(prism), reach_of(prism)), prism);
+}
+
+std::optional<std::size_t> first_uncut_hole(const Mesh& outer, std::span<const Sphere> balls,
+                                            const DrainagePlan& plan, const CarveOptions& options,
+                                            Monitor& monitor) {
+  return DrainedCarver(balls, plan, options, monitor).cut_outer(outer);
 }
 
 DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,

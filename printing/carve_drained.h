@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/drainage.h"
-#include "core/facets_near.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "core/solid.h"
+#include "core/surface_index.h"
 #include "printing/carve.h"
 
 namespace aerate {
@@ -20,9 +20,15 @@ struct WayOut {
   Sphere ball;
 };
 
-// Can the surface be cut where a tube leaves the model, after it has been cut for others? See `cut_surface`.
-bool can_cut(const FacetsNear& outer, const WayOut& way, std::span<const WayOut> others, const Roof& roof,
-             double tolerance);
+// Where a tube leaves the model, does its surface, given with its index, look as if it could be cut? Quick:
+// see cut_surface.h.
+bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const WayOut& way, const Roof& roof,
+                double tolerance);
+
+// The first escape hole of a plan for which the surface cannot be cut, after it was cut for those before it.
+std::optional<std::size_t> first_uncut_hole(const Mesh& outer, std::span<const Sphere> balls,
+                                            const DrainagePlan& plan, const CarveOptions& options,
+                                            Monitor& monitor);
 
 // Carves balls with the roofs that they take, the channels between them and their escape holes.
 //

@@ -267,6 +267,10 @@ double reach_of(const CuttingPrism& prism) {
   return prism.radius + kMargin;
 }
 
+bool may_be_cut(const Mesh& mesh, std::span<const std::uint32_t> near, const CuttingPrism& prism) {
+  return take_patch(mesh, near, prism.axis).has_value();
+}
+
 std::optional<SurfaceCut> cut_surface(const Mesh& mesh, std::span<const std::uint32_t> near,
                                       const CuttingPrism& prism) {
   return Cut(mesh, near, prism).make();

@@ -27,9 +27,13 @@ struct SurfaceCut {
   std::vector<Triangle> sides;         // the prism from its ring to the surface, facing the axis
 };
 
-// The triangles that a prism may meet are nearer to this axis than that (core/facets_near.h).
+// The triangles that a prism may meet are nearer to this axis than that (core/surface_index.h).
 Segment axis_of(const CuttingPrism& prism);
 double reach_of(const CuttingPrism& prism);
+
+// Does the surface that a prism may meet, `near`, face its end all over, and is it 2-manifold? Quick; other
+// reasons why it cannot be cut are rare.
+bool may_be_cut(const Mesh& mesh, std::span<const std::uint32_t> near, const CuttingPrism& prism);
 
 // Cuts a surface by a prism: CGAL's corefinement of the triangles that it may meet, `near`, ascending. Every
 // other triangle stays as it is; it does not matter what flaws there are elsewhere. nullopt if the prism does

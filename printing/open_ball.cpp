@@ -1,22 +1,16 @@
 #include "printing/open_ball.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/convex_hull_3.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <unordered_map>
 
 namespace aerate {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-
 // Half of an edge and a margin: see `open_ball`.
 constexpr double kFreeShareOfEdge = 0.6;
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 double longest_edge(std::span<const Vec3d> ring) {
   double longest = 0;
@@ -25,122 +19,152 @@ double longest_edge(std::span<const Vec3d> ring) {
   return longest;
 }
 
-// Is the point of the sphere inside the opening, or too near to its rim?
-bool is_near(Vec3d point, const Sphere& ball, const Opening& opening, double margin) {
+// Does the point of the sphere lie within `margin` of an opening's rim?
+bool is_near_rim(Vec3d point, const Sphere& ball, const Opening& opening, double margin) {
   const Vec3d along = opening.tube.end - opening.tube.start;
   const Vec3d axis = along * (1 / length(along));
   const double side = dot(point - ball.centre, axis);
   if ((opening.end == TubeEnd::start) != (side > 0)) return false;
   const Vec3d from_start = point - opening.tube.start;
-  return length(from_start - axis * dot(from_start, axis)) < opening.tube.radius + margin;
+  const double from_axis = length(from_start - axis * dot(from_start, axis));
+  return std::abs(from_axis - opening.tube.radius) < margin;
 }
 
-// Triangles of the convex hull by the points' indices; empty if some point is not a corner of it.
-std::vector<Triangle> hull_of(const std::vector<Vec3d>& positions) {
-  std::vector<Point> points;
-  std::map<Point, std::uint32_t> index_of;
-  for (const Vec3d p : positions) {
-    points.emplace_back(p.x, p.y, p.z);
-    index_of.emplace(points.back(), static_cast<std::uint32_t>(index_of.size()));
-  }
-  CGAL::Surface_mesh<Point> hull;
-  CGAL::convex_hull_3(points.begin(), points.end(), hull);
-  if (index_of.size() != points.size() || hull.number_of_vertices() != points.size()) return {};
-  std::vector<Triangle> triangles;
-  for (const auto face : hull.faces()) {
-    Triangle triangle{};
-    std::size_t corner = 0;
-    for (const auto vertex : hull.vertices_around_face(hull.halfedge(face))) {
-      if (corner == 3) return {};
-      triangle[corner++] = index_of.at(hull.point(vertex));
-    }
-    triangles.push_back(triangle);
-  }
-  // The hull's own order depends on its history alone, but ours is easier to rely on.
-  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  std::sort(triangles.begin(), triangles.end());
-  return triangles;
-}
+class BallOpener {
+ public:
+  BallOpener(const Sphere& ball, const StarTriangulation& whole, std::span<const Opening> openings)
+      : ball_(ball), openings_(openings), triangulation_(whole) {}
 
-std::uint64_t directed_edge(std::uint32_t from, std::uint32_t to) {
-  return static_cast<std::uint64_t>(from) << 32 | to;
-}
+  bool take_out_what_is_near_rims() {
+    std::vector<double> margins;
+    for (const Opening& opening : openings_)
+      margins.push_back(kFreeShareOfEdge * longest_edge(opening.ring));
+    const auto count = static_cast<std::uint32_t>(triangulation_.positions().size());
+    for (std::uint32_t v = 0; v < count; ++v) {
+      const Vec3d point = on_ball(triangulation_.positions()[v]);
+      bool is_near = false;
+      for (std::size_t i = 0; i < openings_.size() && !is_near; ++i)
+        is_near = is_near_rim(point, ball_, openings_[i], margins[i]);
+      if (!is_near) {
+        kept_.push_back(v);
+      } else if (!triangulation_.remove(v)) {
+        return false;
+      }
+    }
+    triangulation_.flip_to_hull();
+    return !kept_.empty();
+  }
 
-// Removes the triangles inside the rings, which are `sizes` consecutive vertices each. False if an edge of a
-// ring is no edge of the hull.
-bool remove_inside(std::vector<Triangle>& triangles, std::span<const std::size_t> sizes) {
-  std::unordered_map<std::uint64_t, std::uint32_t> triangle_at;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      triangle_at[directed_edge(triangles[i][corner], triangles[i][(corner + 1) % 3])] = i;
-  }
-  std::unordered_map<std::uint64_t, bool> is_rim;
-  std::vector<std::uint32_t> open;
-  std::vector<bool> is_inside(triangles.size(), false);
-  std::uint32_t first = 0;
-  std::size_t expected = 0;
-  for (const std::size_t size : sizes) {
-    for (std::uint32_t i = 0; i < size; ++i) {
-      const std::uint32_t from = first + i;
-      const std::uint32_t to = first + (i + 1) % static_cast<std::uint32_t>(size);
-      const auto found = triangle_at.find(directed_edge(from, to));
-      if (found == triangle_at.end()) return false;
-      is_rim[directed_edge(from, to)] = true;
-      if (!is_inside[found->second]) open.push_back(found->second);
-      is_inside[found->second] = true;
+  bool put_in_rings() {
+    std::uint32_t last = kept_.front();
+    for (const Opening& opening : openings_) {
+      std::vector<std::uint32_t> ring;
+      for (const Vec3d p : opening.ring) {
+        const Vec3d from_centre = p - ball_.centre;
+        const auto vertex = triangulation_.insert(from_centre * (1 / length(from_centre)), last);
+        if (!vertex) return false;
+        triangulation_.flip_to_hull_around(*vertex);
+        ring.push_back(last = *vertex);
+      }
+      rings_.push_back(std::move(ring));
     }
-    first += static_cast<std::uint32_t>(size);
-    expected += size - 2;
+    return true;
   }
-  std::size_t count = 0;
-  while (!open.empty()) {
-    const Triangle t = triangles[open.back()];
-    open.pop_back();
-    ++count;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t from = t[corner], to = t[(corner + 1) % 3];
-      if (is_rim.contains(directed_edge(from, to))) continue;
-      const std::uint32_t next = triangle_at.at(directed_edge(to, from));
-      if (!is_inside[next]) open.push_back(next);
-      is_inside[next] = true;
+
+  // What is left outside the rings; nullopt if one of them is no polygon of edges, or holds another.
+  std::optional<OpenedBall> outside() {
+    if (!mark_inside()) return std::nullopt;
+    OpenedBall opened;
+    const std::span<const Vec3d> directions = triangulation_.positions();
+    std::vector<std::uint32_t> renumbered(directions.size(), kNone);
+    const auto number = [&](std::uint32_t vertex, Vec3d position) {
+      renumbered[vertex] = static_cast<std::uint32_t>(opened.positions.size());
+      opened.positions.push_back(position);
+    };
+    for (std::size_t i = 0; i < rings_.size(); ++i) {
+      for (std::size_t k = 0; k < rings_[i].size(); ++k) number(rings_[i][k], openings_[i].ring[k]);
     }
+    std::vector<bool> is_used(directions.size(), false);
+    const std::span<const Triangle> triangles = triangulation_.triangles();
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (const std::uint32_t v : triangles[t]) is_used[v] = is_used[v] || !is_inside_[t];
+    }
+    for (const std::uint32_t v : kept_) {
+      if (is_used[v]) number(v, on_ball(directions[v]));
+    }
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      if (is_inside_[t]) continue;
+      Triangle triangle{};
+      for (std::size_t k = 0; k < 3; ++k) triangle[k] = renumbered[triangles[t][k]];
+      std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+      opened.triangles.push_back(triangle);
+    }
+    // The order of flips is nothing to rely on.
+    std::sort(opened.triangles.begin(), opened.triangles.end());
+    return opened;
   }
-  if (count != expected) return false;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (!is_inside[i]) triangles[kept++] = triangles[i];
+
+ private:
+  Vec3d on_ball(Vec3d direction) const { return ball_.centre + direction * ball_.radius; }
+
+  // Marks the triangles inside the rings. False unless these are discs, apart from each other.
+  bool mark_inside() {
+    const std::size_t count = triangulation_.triangles().size();
+    is_inside_.assign(count, false);
+    std::vector<bool> is_rim(3 * count, false);
+    std::vector<std::uint32_t> open;
+    for (const std::vector<std::uint32_t>& ring : rings_) {
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const auto edge = triangulation_.half_edge(ring[k], ring[(k + 1) % ring.size()]);
+        if (!edge) return false;
+        is_rim[*edge] = true;
+        if (!is_inside_[*edge / 3]) open.push_back(*edge / 3);
+        is_inside_[*edge / 3] = true;
+      }
+    }
+    while (!open.empty()) {
+      const std::uint32_t t = open.back();
+      open.pop_back();
+      for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+        const std::uint32_t next = triangulation_.twin(h) / 3;
+        if (is_rim[h] || is_inside_[next]) continue;
+        is_inside_[next] = true;
+        open.push_back(next);
+      }
+    }
+    // From outside no rim is crossed: a triangle beyond one would be that of another ring.
+    for (std::uint32_t h = 0; h < is_rim.size(); ++h) {
+      if (is_rim[h] && is_inside_[triangulation_.twin(h) / 3]) return false;
+    }
+    return true;
   }
-  triangles.resize(kept);
-  return true;
+
+  Sphere ball_;
+  std::span<const Opening> openings_;
+  StarTriangulation triangulation_;
+  std::vector<std::uint32_t> kept_;  // of the vertices that it came with
+  std::vector<std::vector<std::uint32_t>> rings_;
+  std::vector<bool> is_inside_;  // by triangle
+};
+
+double nearest_plane(const OpenedBall& opened, Vec3d centre) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : opened.triangles) {
+    const Vec3d a = opened.positions[t[0]];
+    const Vec3d normal = cross(opened.positions[t[1]] - a, opened.positions[t[2]] - a);
+    nearest = std::min(nearest, dot(normal, a - centre) / length(normal));
+  }
+  return nearest;
 }
 
 }  // namespace
 
-std::optional<OpenedBall> open_ball(const Sphere& ball, std::span<const Vec3d> directions,
+std::optional<OpenedBall> open_ball(const Sphere& ball, const StarTriangulation& whole,
                                     std::span<const Opening> openings) {
-  OpenedBall opened;
-  std::vector<std::size_t> sizes;
-  std::vector<double> margins;
-  for (const Opening& opening : openings) {
-    opened.positions.insert(opened.positions.end(), opening.ring.begin(), opening.ring.end());
-    sizes.push_back(opening.ring.size());
-    margins.push_back(kFreeShareOfEdge * longest_edge(opening.ring));
-  }
-  for (const Vec3d direction : directions) {
-    const Vec3d point = ball.centre + direction * ball.radius;
-    bool is_free = true;
-    for (std::size_t i = 0; i < openings.size() && is_free; ++i)
-      is_free = !is_near(point, ball, openings[i], margins[i]);
-    if (is_free) opened.positions.push_back(point);
-  }
-  opened.triangles = hull_of(opened.positions);
-  if (opened.triangles.empty() || !remove_inside(opened.triangles, sizes)) return std::nullopt;
-  opened.nearest = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : opened.triangles) {
-    const Vec3d a = opened.positions[t[0]];
-    const Vec3d normal = cross(opened.positions[t[1]] - a, opened.positions[t[2]] - a);
-    opened.nearest = std::min(opened.nearest, dot(normal, a - ball.centre) / length(normal));
-  }
+  BallOpener opener(ball, whole, openings);
+  if (!opener.take_out_what_is_near_rims() || !opener.put_in_rings()) return std::nullopt;
+  auto opened = opener.outside();
+  if (opened) opened->nearest = nearest_plane(*opened, ball.centre);
   return opened;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/drainage.h"
 #include "core/mesh.h"
+#include "printing/star_triangulation.h"
 
 namespace aerate {
 
@@ -24,11 +25,13 @@ struct OpenedBall {
   double nearest = 0;  // least distance of a triangle's plane from the centre
 };
 
-// The convex hull of the rings' points and of those points of the sphere (centre + radius * direction) that
-// are not near an opening, less what is inside the rings. All points lie on one sphere, so an edge of a ring
-// is an edge of the hull as soon as no other point lies in the ball that has it for a diameter: points that
-// do are left out. nullopt if the openings are too near to each other for that.
-std::optional<OpenedBall> open_ball(const Sphere& ball, std::span<const Vec3d> directions,
+// The convex hull of the rings' points and of the points that `whole`, a connected triangulation of the unit
+// sphere that is its own hull, has on the ball, but for those near a ring; less what is inside the rings. All
+// points lie on one sphere, so an edge of a ring is an edge of the hull as soon as no other point lies in the
+// ball that has it for a diameter: points that do are left out. The hull changes near the rings alone, so it is
+// found by taking those points out of `whole`, putting the rings in, and flipping edges.
+// nullopt if the openings are too near to each other for that, or leave too few points.
+std::optional<OpenedBall> open_ball(const Sphere& ball, const StarTriangulation& whole,
                                     std::span<const Opening> openings);
 
 }  // namespace aerate

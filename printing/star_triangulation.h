@@ -13,8 +13,9 @@
 
 namespace aerate {
 
-// A closed triangulation all of whose triangles face away from the origin, that can be changed edge by edge.
-// Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t; twins run between the same vertices.
+// A closed triangulation all of whose triangles face away from the origin, that can be changed edge by edge and
+// vertex by vertex. Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t, which is on its left;
+// twins run between the same vertices.
 class StarTriangulation {
  public:
   StarTriangulation(std::vector<Vec3d> positions, std::vector<Triangle> triangles)
@@ -24,7 +25,10 @@ class StarTriangulation {
   bool connect() {
     const std::size_t edges = 3 * triangles_.size() / 2;
     if (triangles_.empty() || positions_.size() + triangles_.size() != edges + 2) return false;
-    return pair_half_edges() && is_connected();
+    if (!pair_half_edges() || !is_connected()) return false;
+    out_.resize(positions_.size());
+    for (std::uint32_t h = 0; h < 3 * triangles_.size(); ++h) out_[start(h)] = h;
+    return true;
   }
 
   // Flips edges that lie below the surface's convex hull until none is left: each flip adds volume.
@@ -32,16 +36,14 @@ class StarTriangulation {
     std::vector<std::uint32_t> unchecked;
     unchecked.reserve(3 * triangles_.size());
     for (std::uint32_t h = 0; h < 3 * triangles_.size(); ++h) unchecked.push_back(h);
-    while (!unchecked.empty()) {
-      const std::uint32_t h = unchecked.back();
-      unchecked.pop_back();
-      if (!is_below_hull(h) || !is_flippable(h)) continue;
-      const std::uint32_t g = twins_[h];
-      flip(h);
-      for (const std::uint32_t side : {h, next(h), next(next(h)), g, next(g), next(next(g))}) {
-        unchecked.push_back(side);
-      }
-    }
+    flip_to_hull(std::move(unchecked));
+  }
+
+  // The same where edges beside a vertex may lie below the hull, and nowhere else.
+  void flip_to_hull_around(std::uint32_t vertex) {
+    std::vector<std::uint32_t> unchecked;
+    for_each_out(vertex, [&](std::uint32_t h) { unchecked.insert(unchecked.end(), {h, next(h)}); });
+    flip_to_hull(std::move(unchecked));
   }
 
   // Moves every vertex to the unit vector along the sum of its triangles' area vectors, each weighted by a
@@ -61,16 +63,46 @@ class StarTriangulation {
     }
   }
 
-  // Splits the triangle that the ray from the centre along `direction` meets into three at a new vertex
-  // `position` on that ray, and returns its number; nullopt if the ray meets no triangle or an edge.
-  std::optional<std::uint32_t> insert(Vec3d position) {
+  // Splits the triangle that the ray from the centre through `position` meets into three at a new vertex there,
+  // and returns its number; nullopt if the ray meets an edge. The search begins at the vertex `near`.
+  std::optional<std::uint32_t> insert(Vec3d position, std::uint32_t near = 0) {
+    if (const auto t = walk_towards(position, out_[near] / 3)) return split(*t, position);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      const auto [a, b, c] = corners(t);
-      if (volume(a, b, position) > 0 && volume(b, c, position) > 0 && volume(c, a, position) > 0) {
-        return split(t, position);
-      }
+      if (!crossed_side(t, position) && is_within(t, position)) return split(t, position);
     }
     return std::nullopt;
+  }
+
+  // Takes a vertex out of all triangles, of which there are then two less; its position stays in the list. False
+  // if the triangulation would not be left star-shaped.
+  bool remove(std::uint32_t vertex) {
+    while (true) {
+      std::size_t degree = 0;
+      std::optional<std::uint32_t> flippable;
+      for_each_out(vertex, [&](std::uint32_t h) {
+        ++degree;
+        if (!flippable && is_flippable(h)) flippable = h;
+      });
+      if (degree == 3) break;
+      if (!flippable) return false;
+      flip(*flippable);
+    }
+    const std::uint32_t first = out_[vertex], third = next_out(first), second = next_out(third);
+    if (!(volume(positions_[start(next(first))], positions_[start(next(second))],
+                 positions_[start(next(third))]) > 0))
+      return false;
+    merge(next(first), next(second), next(third));
+    return true;
+  }
+
+  std::uint32_t twin(std::uint32_t half_edge) const { return twins_[half_edge]; }
+  // The half-edge from one vertex to another, if they are neighbours.
+  std::optional<std::uint32_t> half_edge(std::uint32_t from, std::uint32_t to) const {
+    std::optional<std::uint32_t> found;
+    for_each_out(from, [&](std::uint32_t h) {
+      if (start(next(h)) == to) found = h;
+    });
+    return found;
   }
 
   std::span<const Vec3d> positions() const { return positions_; }
@@ -83,6 +115,55 @@ class StarTriangulation {
 
  private:
   std::uint32_t start(std::uint32_t half_edge) const { return triangles_[half_edge / 3][half_edge % 3]; }
+
+  // The half-edge out of the same vertex that comes next, clockwise.
+  std::uint32_t next_out(std::uint32_t half_edge) const { return next(twins_[half_edge]); }
+
+  template <typename Visit>
+  void for_each_out(std::uint32_t vertex, Visit visit) const {
+    std::uint32_t h = out_[vertex];
+    do {
+      visit(h);
+      h = next_out(h);
+    } while (h != out_[vertex]);
+  }
+
+  void flip_to_hull(std::vector<std::uint32_t> unchecked) {
+    while (!unchecked.empty()) {
+      const std::uint32_t h = unchecked.back();
+      unchecked.pop_back();
+      if (!is_below_hull(h) || !is_flippable(h)) continue;
+      const std::uint32_t g = twins_[h];
+      flip(h);
+      for (const std::uint32_t side : {h, next(h), next(next(h)), g, next(g), next(next(g))}) {
+        unchecked.push_back(side);
+      }
+    }
+  }
+
+  // A side of the triangle beyond which the ray through `position` meets the surface.
+  std::optional<std::uint32_t> crossed_side(std::uint32_t t, Vec3d position) const {
+    const auto [a, b, c] = corners(t);
+    if (volume(a, b, position) < 0) return 3 * t;
+    if (volume(b, c, position) < 0) return 3 * t + 1;
+    if (volume(c, a, position) < 0) return 3 * t + 2;
+    return std::nullopt;
+  }
+
+  bool is_within(std::uint32_t t, Vec3d position) const {
+    const auto [a, b, c] = corners(t);
+    return volume(a, b, position) > 0 && volume(b, c, position) > 0 && volume(c, a, position) > 0;
+  }
+
+  // From triangle to triangle to the one that the ray meets; nullopt if that takes too long or it meets an edge.
+  std::optional<std::uint32_t> walk_towards(Vec3d position, std::uint32_t t) const {
+    for (std::size_t step = 0; step < triangles_.size(); ++step) {
+      const auto side = crossed_side(t, position);
+      if (!side) return is_within(t, position) ? std::optional(t) : std::nullopt;
+      t = twins_[*side] / 3;
+    }
+    return std::nullopt;
+  }
 
   // Six times the volume between the centre and a triangle, positive if that faces outward.
   static double volume(Vec3d a, Vec3d b, Vec3d c) { return dot(cross(a, b), c); }
@@ -164,7 +245,39 @@ class StarTriangulation {
     pair(3 * t + 1, second + 2);
     pair(second + 1, third + 2);
     pair(third + 1, 3 * t + 2);
+    out_.push_back(3 * t + 2);
+    out_[b] = second;
+    out_[c] = third;
     return v;
+  }
+
+  // Makes one triangle of the three around a vertex, of which these half-edges, one after the other, are the
+  // outer sides.
+  void merge(std::uint32_t first, std::uint32_t second, std::uint32_t third) {
+    const std::array<std::uint32_t, 3> twins{twins_[first], twins_[second], twins_[third]};
+    const std::uint32_t t = first / 3;
+    const Triangle merged{start(first), start(second), start(third)};
+    triangles_[t] = merged;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      pair(3 * t + k, twins[k]);
+      out_[merged[k]] = 3 * t + k;
+    }
+    drop(std::max(second / 3, third / 3));
+    drop(std::min(second / 3, third / 3));
+  }
+
+  // Takes a triangle out of the list, which nothing refers to; the last takes its place.
+  void drop(std::uint32_t t) {
+    const auto last = static_cast<std::uint32_t>(triangles_.size() - 1);
+    if (t != last) {
+      triangles_[t] = triangles_[last];
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        pair(3 * t + k, twins_[3 * last + k]);
+        out_[triangles_[t][k]] = 3 * t + k;
+      }
+    }
+    triangles_.pop_back();
+    twins_.resize(3 * triangles_.size());
   }
 
   // a -> b with c on its left and d on its right becomes d -> c; the four outer sides keep their twins.
@@ -179,6 +292,10 @@ class StarTriangulation {
     pair(h, twin_ad);
     pair(g, twin_bc);
     pair(bc, ad);
+    out_[start(h)] = h;
+    out_[start(g)] = g;
+    out_[d] = bc;
+    out_[c] = ad;
   }
 
   void pair(std::uint32_t g, std::uint32_t h) {
@@ -212,6 +329,7 @@ class StarTriangulation {
   std::vector<Vec3d> positions_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> twins_;
+  std::vector<std::uint32_t> out_;  // by vertex: a half-edge that leads out of it
   std::vector<std::uint32_t> star_offsets_, star_triangles_;
 };
 

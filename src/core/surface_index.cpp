@@ -1,4 +1,4 @@
-#include "core/facets_near.h"
+#include "core/surface_index.h"
 
 #include <algorithm>
 
@@ -39,17 +39,17 @@ struct Collector {
 
 }  // namespace
 
-FacetsNear::FacetsNear(const Mesh& mesh) : mesh_(mesh), bvh_(mesh.positions, mesh.triangles) {}
+SurfaceIndex::SurfaceIndex(const Mesh& mesh)
+    : bvh_(mesh.positions, mesh.triangles), winding_(bvh_.view().facets) {}
 
-std::vector<std::uint32_t> FacetsNear::find(const Segment& segment, double reach) const {
-  const kernels::TriangleBvhView view = bvh_.view();
-  Collector collector{view, segment, reach, box_round(segment, reach), {}};
-  view.walk(collector);
+std::vector<std::uint32_t> SurfaceIndex::triangles_near(const Segment& segment, double reach) const {
+  Collector collector{bvh(), segment, reach, box_round(segment, reach), {}};
+  bvh().walk(collector);
   std::sort(collector.found.begin(), collector.found.end());
   return std::move(collector.found);
 }
 
-std::vector<std::uint32_t> facets_near(const Mesh& mesh, const Segment& segment, double reach) {
+std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const Segment& segment, double reach) {
   const Box box = box_round(segment, reach);
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {

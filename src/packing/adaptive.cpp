@@ -87,10 +87,11 @@ double expected_spheres(const Mesh& mesh, double volume, const PackingLimits& li
 WorkEstimate estimate_work(const Mesh& mesh, double volume, const PackingLimits& limits,
                            const AdaptiveOptions& options) {
   constexpr double kSecondsPerFacet = 0.8e-6;
-  constexpr double kSecondsPerSphere = 200e-6;
+  constexpr double kSecondsPerSphere = 200e-6, kSecondsPerVoidWithRoof = 320e-6;
   const auto facets = static_cast<double>(mesh.triangles.size());
   const double spheres = expected_spheres(mesh, volume, limits, options);
-  return {facets * kSecondsPerFacet + spheres * kSecondsPerSphere,
+  const bool has_roofs = limits.roof.shapes(limits.max_radius);
+  return {facets * kSecondsPerFacet + spheres * (has_roofs ? kSecondsPerVoidWithRoof : kSecondsPerSphere),
           facets * (sizeof(Triangle) + sizeof(Vec3f)) + spheres * sizeof(kernels::Ball)};
 }
 
@@ -143,8 +144,9 @@ Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const Adapt
 double estimate_adaptive_bytes(const Mesh& mesh, const PackingLimits& limits,
                                const AdaptiveOptions& options) {
   const double index_bytes = static_cast<double>(mesh.triangles.size()) * (4 * sizeof(kernels::Facet) + 64);
-  // Each sphere comes with the cells around it and its entries in the grid.
-  constexpr double kBytesPerSphere = 3000;
+  // Each sphere comes with the cells around it and its entries in the grid: 560 to 1,700 bytes as measured
+  // (docs/benchmarks.md).
+  constexpr double kBytesPerSphere = 2000;
   return index_bytes + most_spheres(std::abs(signed_volume(mesh)), limits, options) * kBytesPerSphere +
          (1 << 24);
 }

@@ -71,14 +71,14 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
   return kLongestInDiameters * 2 * request.hole_radius + kLongestInWalls * limits.wall;
 }
 
-HolePlaces::HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh,
-                       std::span<const Sphere> spheres, const PackingLimits& limits,
-                       const DrainageRequest& request, const TubeClearance& clearance)
+HolePlaces::HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres,
+                       const PackingLimits& limits, const DrainageRequest& request,
+                       const TubeClearance& clearance)
     : spheres_(spheres),
       limits_(limits),
       request_(request),
       clearance_(clearance),
-      outward_(mesh.positions, outward_shells) {}
+      outward_(outward) {}
 
 // Ends the tube where its axis meets the surface.
 bool HolePlaces::reach_surface(EscapeHole& hole) const {
@@ -114,7 +114,7 @@ bool HolePlaces::is_sound_alone(const EscapeHole& hole) const {
   for (const double beyond : {tube.radius, 2 * tube.radius}) {
     const Vec3d p = tube.end + axis * beyond;
     if (clearance_.to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
-    if (outward_.view().winding_number(p) != 0) return false;
+    if (outward_.winding_number(p) != 0) return false;
   }
   return clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) &&
          clearance_.keeps_wall_on_way_out(tube, kLeastSlope);
@@ -233,7 +233,7 @@ std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std:
   const Vec3d on_surface = clearance_.nearest_on_surface(place);
   const double off = length(on_surface - place);
   if (off > 2 * request_.hole_radius) {
-    const bool outside = outward_.view().winding_number(place) == 0;
+    const bool outside = outward_.winding_number(place) == 0;
     throw UsageError("an escape hole is asked for at " + to_text(place) + ", which is " +
                          std::to_string(off).substr(0, 5) + " mm " +
                          (outside ? "outside the model" : "inside the model, away from its surface"),

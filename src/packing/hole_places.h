@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/drainage.h"
-#include "core/mesh.h"
 #include "core/packing.h"
 #include "kernels/winding.h"
 #include "packing/tube_clearance.h"
@@ -22,9 +21,9 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
 // many plans.
 class HolePlaces {
  public:
-  // `outward_shells`: see DrainableModel.
-  HolePlaces(std::span<const Triangle> outward_shells, const Mesh& mesh, std::span<const Sphere> spheres,
-             const PackingLimits& limits, const DrainageRequest& request, const TubeClearance& clearance);
+  // `outward`: see DrainableModel.
+  HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres, const PackingLimits& limits,
+             const DrainageRequest& request, const TubeClearance& clearance);
 
   // Tubes that lead out of some of the balls, the best first. `down` is the way liquid runs: the direction of
   // gravity as printed for the low hole, the opposite for the high one. A place is the better, the lower it
@@ -61,7 +60,7 @@ class HolePlaces {
   PackingLimits limits_;
   const DrainageRequest& request_;
   const TubeClearance& clearance_;
-  kernels::HostWinding outward_;
+  kernels::WindingView outward_;
   std::array<PlacesByBall, 2> places_;  // for print orientation and upside down
   std::map<std::array<double, 7>, bool> sound_;
 };

@@ -83,10 +83,10 @@ class Planner {
         can_open_(can_open),
         monitor_(monitor),
         longest_(std::max(largest_radius(), kLongestInDiameters * 2 * request.channel_radius)),
-        clearance_(model.mesh, spheres_, packing.limits,
+        clearance_(model.surface, spheres_, packing.limits,
                    std::max(longest_, longest_hole(request, packing.limits)),
                    std::max(request.channel_radius, request.hole_radius)),
-        places_(model.outward_shells, model.mesh, spheres_, packing.limits, request, clearance_) {
+        places_(model.outward, spheres_, packing.limits, request, clearance_) {
     plan_.roof = roof_;
   }
 
@@ -321,7 +321,7 @@ bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
     const UncutPlace place{hole.from, end.x, end.y, end.z};
     if (uncut_.contains(place)) continue;
     if (++cuts > kMostCuts) return false;
-    if (!can_open_(hole, plan_.holes)) {
+    if (!can_open_(hole)) {
       uncut_.insert(place);
       continue;
     }

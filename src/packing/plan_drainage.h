@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/drainage.h"
-#include "core/mesh.h"
 #include "core/monitor.h"
 #include "core/packing.h"
+#include "core/surface_index.h"
 
 namespace aerate {
 
@@ -33,13 +33,13 @@ struct PlannedDrainage {
 // A network of its own is opened if it holds at least this share of the voids' volume: its two holes show.
 inline constexpr double kLeastNetworkShare = 0.05;
 
-// Can the surface be cut for this hole, after it has been cut for the others? Their `from` count the packing.
-using CanOpen = std::function<bool(const EscapeHole& hole, std::span<const EscapeHole> others)>;
+// Can the surface be opened for this hole? Its `from` counts the packing.
+using CanOpen = std::function<bool(const EscapeHole& hole)>;
 
 // A closed model. Holes lead out of its outward shells: the space inside an inward shell is sealed itself.
 struct DrainableModel {
-  const Mesh& mesh;
-  std::span<const Triangle> outward_shells;  // those of its triangles that bound it outside
+  const SurfaceIndex& surface;
+  const kernels::WindingView& outward;  // of those of its triangles that bound it outside; 0 outside of all
 };
 
 // Joins voids by straight channels and opens them to the outside.

@@ -71,9 +71,9 @@ double tube_spacing(double radius, double other_radius) {
   return radius + other_radius + kOpeningSpacingShare * std::max(radius, other_radius);
 }
 
-TubeClearance::TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
+TubeClearance::TubeClearance(const SurfaceIndex& surface, std::span<const Sphere> spheres, const PackingLimits& limits,
                              double longest, double widest_radius)
-    : bvh_(mesh.positions, mesh.triangles),
+    : bvh_(surface.bvh()),
       spheres_(spheres),
       limits_(limits),
       longest_(longest),
@@ -113,24 +113,24 @@ std::span<const std::uint32_t> TubeClearance::neighbours(std::uint32_t ball) con
 }
 
 double TubeClearance::to_surface(Vec3d point, double limit) const {
-  return std::sqrt(bvh_.view().nearest(point, limit * limit).distance_squared);
+  return std::sqrt(bvh_.nearest(point, limit * limit).distance_squared);
 }
 
 std::optional<double> TubeClearance::first_hit(Vec3d start, Vec3d direction, double longest) const {
-  RayMetric metric{start, direction, longest, bvh_.view().facets};
-  bvh_.view().walk(metric);
+  RayMetric metric{start, direction, longest, bvh_.facets};
+  bvh_.walk(metric);
   if (metric.best >= longest) return std::nullopt;
   return metric.best;
 }
 
 Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
-  const kernels::NearestFacet nearest = bvh_.view().nearest(point, kInfinity);
-  return kernels::nearest_point_on_facet(point, bvh_.view().facets[nearest.facet]).point;
+  const kernels::NearestFacet nearest = bvh_.nearest(point, kInfinity);
+  return kernels::nearest_point_on_facet(point, bvh_.facets[nearest.facet]).point;
 }
 
 Vec3d TubeClearance::normal_near(Vec3d point) const {
-  const kernels::NearestFacet nearest = bvh_.view().nearest(point, kInfinity);
-  const kernels::Facet& facet = bvh_.view().facets[nearest.facet];
+  const kernels::NearestFacet nearest = bvh_.nearest(point, kInfinity);
+  const kernels::Facet& facet = bvh_.facets[nearest.facet];
   const Vec3d a = to_double(facet.a);
   const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);
   const double size = length(normal);

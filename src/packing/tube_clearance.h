@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "core/drainage.h"
-#include "core/mesh.h"
 #include "core/packing.h"
 #include "core/segment_distance.h"
-#include "kernels/triangle_bvh.h"
+#include "core/surface_index.h"
 
 namespace aerate {
 
@@ -22,9 +21,11 @@ double tube_spacing(double radius, double other_radius);
 // that it does not join and from tubes that were placed before.
 class TubeClearance {
  public:
-  // `longest` is the length that no channel exceeds, mm. The spheres must outlive this.
-  TubeClearance(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
+  // `longest` is the length that no channel exceeds, mm. Surface and spheres must outlive this.
+  TubeClearance(const SurfaceIndex& surface, std::span<const Sphere> spheres, const PackingLimits& limits,
                 double longest, double widest_radius);
+  TubeClearance(SurfaceIndex&& surface, std::span<const Sphere> spheres, const PackingLimits& limits,
+                double longest, double widest_radius) = delete;
 
   // Distance from a point to the model's surface; `limit` if it is farther.
   double to_surface(Vec3d point, double limit) const;
@@ -70,7 +71,7 @@ class TubeClearance {
   bool keeps_away(const Tube& tube, double most, double slope) const;
   std::uint64_t cell_of(Vec3d point, int dx, int dy, int dz) const;
 
-  kernels::HostTriangleBvh bvh_;
+  kernels::TriangleBvhView bvh_;
   std::span<const Sphere> spheres_;
   PackingLimits limits_;
   double longest_;

@@ -8,7 +8,6 @@
 #include "kernels/roof_distance.h"
 #include "kernels/roofed_surface.h"
 #include "kernels/triangle_bvh.h"
-#include "kernels/winding.h"
 #include "packing/sphere_pairs.h"
 
 namespace aerate {
@@ -19,9 +18,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A model's own fp32 coordinates are not better than this share of its size.
 constexpr double kRoundingShare = 1e-6;
 
-double size_of(const Mesh& mesh) {
-  const Box3f box = bounding_box(mesh);
-  return std::max(length(to_double(box.upper) - to_double(box.lower)), 0.0);
+double size_of(const SurfaceIndex& surface) {
+  const Box3d box = surface.winding().box;
+  return std::max(length(box.upper - box.lower), 0.0);
 }
 
 // A radius a little below `limit`, so that sums that were rounded once more still keep it.
@@ -40,11 +39,10 @@ double distance_of(const kernels::TriangleBvhView& bvh, Vec3d point, double limi
 }
 
 // Distance of each void to the surface.
-std::vector<double> walls_of(const Mesh& mesh, std::span<const Sphere> spheres, const Roof& roof) {
-  const kernels::HostTriangleBvh bvh(mesh.positions, mesh.triangles);
+std::vector<double> walls_of(const SurfaceIndex& surface, std::span<const Sphere> spheres, const Roof& roof) {
   std::vector<double> walls(spheres.size());
   tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
-    walls[i] = kernels::distance_to_surface(bvh.view(), roof, spheres[i].centre, spheres[i].radius);
+    walls[i] = kernels::distance_to_surface(surface.bvh(), roof, spheres[i].centre, spheres[i].radius);
   });
   return walls;
 }
@@ -66,19 +64,17 @@ double radius_allowed_by_gap(Vec3d smaller, Vec3d larger, double larger_radius, 
 
 }  // namespace
 
-Packing verify_packing(const Mesh& mesh, Packing packing) {
+Packing verify_packing(const SurfaceIndex& surface, Packing packing) {
   if (packing.spheres.empty()) return packing;
-  const kernels::HostTriangleBvh bvh(mesh.positions, mesh.triangles);
-  const kernels::HostWinding winding(mesh.positions, mesh.triangles);
   const PackingLimits& limits = packing.limits;
-  const double tolerance = kRoundingShare * size_of(mesh);
+  const double tolerance = kRoundingShare * size_of(surface);
 
   std::vector<double> radii(packing.spheres.size());
   tbb::parallel_for(std::size_t{0}, packing.spheres.size(), [&](std::size_t i) {
     const Sphere& sphere = packing.spheres[i];
-    const bool is_inside = winding.view().winding_number(sphere.centre) == 1;
+    const bool is_inside = surface.winding().winding_number(sphere.centre) == 1;
     radii[i] = is_inside
-                   ? checked_radius(sphere, radius_allowed_by_wall(bvh.view(), sphere, limits), tolerance)
+                   ? checked_radius(sphere, radius_allowed_by_wall(surface.bvh(), sphere, limits), tolerance)
                    : 0.0;
   });
   for (const SpherePair& pair : find_pairs_within(packing.spheres, limits.gap, limits.roof)) {
@@ -113,17 +109,16 @@ Packing verify_packing(const Mesh& mesh, Packing packing) {
   return packing;
 }
 
-std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing) {
-  const double tolerance = kRoundingShare * size_of(mesh);
-  std::vector<Vec3d> centres;
-  centres.reserve(packing.spheres.size());
-  for (const Sphere& sphere : packing.spheres) centres.push_back(sphere.centre);
-  const std::vector<double> walls = walls_of(mesh, packing.spheres, packing.limits.roof);
-  const std::vector<int> winding =
-      kernels::HostWinding(mesh.positions, mesh.triangles).winding_numbers(centres);
+std::optional<PackingFault> find_fault(const SurfaceIndex& surface, const Packing& packing) {
+  const double tolerance = kRoundingShare * size_of(surface);
+  const std::vector<double> walls = walls_of(surface, packing.spheres, packing.limits.roof);
+  std::vector<int> winding(packing.spheres.size());
+  tbb::parallel_for(std::size_t{0}, winding.size(), [&](std::size_t i) {
+    winding[i] = surface.winding().winding_number(packing.spheres[i].centre);
+  });
 
   std::optional<PackingFault> first;
-  for (std::size_t i = 0; i < centres.size() && !first; ++i) {
+  for (std::size_t i = 0; i < walls.size() && !first; ++i) {
     const double wall = walls[i];
     if (winding[i] != 1) {
       const auto kind = winding[i] == 0 ? PackingFault::Kind::outside : PackingFault::Kind::overlapped_region;
@@ -141,16 +136,12 @@ std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing)
   return first;
 }
 
-std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d> points) {
-  return kernels::HostTriangleBvh(mesh.positions, mesh.triangles).distances(points);
-}
-
-Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres, const Roof& roof) {
+Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Sphere> spheres, const Roof& roof) {
   Clearances clearances{kInfinity, std::nullopt};
   if (spheres.empty()) return clearances;
   double smallest_radius = kInfinity;
   for (const Sphere& sphere : spheres) smallest_radius = std::min(smallest_radius, sphere.radius);
-  for (const double wall : walls_of(mesh, spheres, roof)) clearances.wall = std::min(clearances.wall, wall);
+  for (const double wall : walls_of(surface, spheres, roof)) clearances.wall = std::min(clearances.wall, wall);
   if (spheres.size() < 2) return clearances;
   // Widen the search until a pair is in it.
   for (double reach = std::max(smallest_radius, 1e-3);; reach *= 2) {
@@ -163,16 +154,13 @@ Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres,
   }
 }
 
-Sphere largest_inscribed_sphere(const Mesh& mesh) {
+Sphere largest_inscribed_sphere(const SurfaceIndex& surface) {
   constexpr std::size_t kSteps = 48;
-  const kernels::HostTriangleBvh bvh(mesh.positions, mesh.triangles);
-  const kernels::HostWinding winding(mesh.positions, mesh.triangles);
-  const Box3f box_f = bounding_box(mesh);
-  const Vec3d lower = to_double(box_f.lower);
-  const Vec3d extent = to_double(box_f.upper) - lower;
+  const Vec3d lower = surface.winding().box.lower;
+  const Vec3d extent = surface.winding().box.upper - lower;
 
   const auto clearance = [&](Vec3d p) {
-    return winding.view().winding_number(p) == 1 ? distance_of(bvh.view(), p, kInfinity) : 0.0;
+    return surface.winding().winding_number(p) == 1 ? distance_of(surface.bvh(), p, kInfinity) : 0.0;
   };
   std::vector<Sphere> starts(kSteps * kSteps * kSteps);
   tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {

@@ -5,18 +5,18 @@
 #include <span>
 #include <vector>
 
-#include "core/mesh.h"
 #include "core/packing.h"
+#include "core/surface_index.h"
 #include "kernels/roof.h"
 
 namespace aerate {
 
-// Checks every sphere in fp64 against the mesh (winding number 1 at the centre, wall) and against its
+// Checks every sphere in fp64 against the surface (winding number 1 at the centre, wall) and against its
 // neighbours (gap), by other means than the packers use: a bounding-volume hierarchy and a search among
 // pairs. Shrinks what is too large by no more than rounding explains (1e-6 of the model's size), drops the
 // rest and whatever became smaller than min_radius, and adds the counts to the statistics. Always run on a
 // packing before it is used. Order is kept.
-Packing verify_packing(const Mesh& mesh, Packing packing);
+Packing verify_packing(const SurfaceIndex& surface, Packing packing);
 
 // A sphere that breaks its packing's limits by more than rounding explains.
 struct PackingFault {
@@ -33,10 +33,7 @@ struct PackingFault {
 };
 
 // The first such sphere, by index.
-std::optional<PackingFault> find_fault(const Mesh& mesh, const Packing& packing);
-
-// Exact (fp64) distance from each point to the surface of `mesh`, mm.
-std::vector<double> distances_to_surface(const Mesh& mesh, std::span<const Vec3d> points);
+std::optional<PackingFault> find_fault(const SurfaceIndex& surface, const Packing& packing);
 
 // Smallest clearances of a set of balls, with the roofs that they take (a little less than the real ones
 // above a roof, as kernels/roof_distance.h says), mm: to the surface (infinite without balls), and between
@@ -45,10 +42,10 @@ struct Clearances {
   double wall = 0;
   std::optional<double> gap;
 };
-Clearances measure_clearances(const Mesh& mesh, std::span<const Sphere> spheres, const Roof& roof = {});
+Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Sphere> spheres, const Roof& roof = {});
 
 // The largest ball inside the model where its winding number is 1, touching the surface (no wall); radius 0
 // if there is none. For the message when nothing fits under the limits: accurate to about 1 %.
-Sphere largest_inscribed_sphere(const Mesh& mesh);
+Sphere largest_inscribed_sphere(const SurfaceIndex& surface);
 
 }  // namespace aerate

@@ -21,6 +21,11 @@ constexpr double kBytesPerOutputTriangle = 100;
 // surface was remeshed, its edges.
 constexpr double kBytesPerOuterTriangle = 150;
 
+double bytes_of_result(double void_triangles, std::size_t outer_triangles) {
+  const auto outer = static_cast<double>(outer_triangles);
+  return (outer + void_triangles) * kBytesPerOutputTriangle + outer * kBytesPerOuterTriangle;
+}
+
 void require(double needed, const std::string& what, const std::string& hint) {
   const double available = available_memory_bytes();
   if (needed <= available) return;
@@ -53,11 +58,12 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
 }
 
 void require_memory_for_voids(const VoidPlan& plan, double tolerance, std::size_t outer_triangles) {
-  const std::size_t triangles =
-      outer_triangles + estimate_void_triangles(plan, CarveOptions{.tolerance = tolerance});
-  require(static_cast<double>(triangles) * kBytesPerOutputTriangle +
-              static_cast<double>(outer_triangles) * kBytesPerOuterTriangle,
-          fmt::format("a result of {} triangles ({} voids)", triangles, plan.spheres.size()),
+  const CarveOptions options{.tolerance = tolerance};
+  if (bytes_of_result(most_void_triangles(plan, options), outer_triangles) <= available_memory_bytes())
+    return;
+  const std::size_t in_voids = estimate_void_triangles(plan, options);
+  require(bytes_of_result(static_cast<double>(in_voids), outer_triangles),
+          fmt::format("a result of {} triangles ({} voids)", outer_triangles + in_voids, plan.spheres.size()),
           "give a larger --tolerance or --min-radius, or limit it with --max-triangles");
 }
 

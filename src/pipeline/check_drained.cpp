@@ -8,15 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include "core/facets_near.h"
 #include "core/segment_distance.h"
-#include "kernels/winding.h"
 #include "mesh/topology.h"
 #include "packing/verify.h"
 #include "pipeline/ceilings.h"
 #include "pipeline/check_drained_parts.h"
 #include "pipeline/check_failure.h"
 #include "pipeline/mesh_part.h"
+#include "pipeline/outward_shells.h"
 #include "pipeline/planned_shape.h"
 #include "pipeline/same_triangles.h"
 
@@ -105,7 +104,7 @@ void require_remains_on_surface(const Mesh& read_back, const ExpectedDrained& ex
     for (const std::uint32_t v : read_back.triangles[i]) corners.push_back(to_double(read_back.positions[v]));
   }
   double farthest = 0;
-  for (const double distance : distances_to_surface(expected.model, corners))
+  for (const double distance : expected.surface.distances(corners))
     farthest = std::max(farthest, distance);
   if (farthest > rounding_of(expected.model))
     fail_check("the outer surface beside a hole is {:.3g} mm from the model's", farthest);
@@ -163,19 +162,19 @@ std::size_t count_sealed(const Mesh& read_back, const EdgeUses& uses, const Expe
     if (label == kNoShell) fail_check("triangle {} belongs to no shell", i);
     if (shells[label].volume <= 0) is_sealed[label] = true;
   }
-  const std::vector<Triangle> outward = outward_shells(expected.model, expected.inspection);
-  const kernels::HostWinding winding(expected.model.positions, outward);
-  std::vector<Vec3d> mouths;
-  for (const EscapeHole& hole : expected.plan.holes) mouths.push_back(mouth_of(hole.tube));
-  const std::vector<int> around = winding.winding_numbers(mouths);
-  return static_cast<std::size_t>(std::count(is_sealed.begin(), is_sealed.end(), true) +
-                                  std::count_if(around.begin(), around.end(), [](int w) { return w != 0; }));
+  const OutwardShells outward(expected.model, expected.inspection, expected.surface);
+  const auto is_shut_in = [&](const EscapeHole& hole) {
+    return outward.winding().winding_number(mouth_of(hole.tube)) != 0;
+  };
+  return static_cast<std::size_t>(
+      std::count(is_sealed.begin(), is_sealed.end(), true) +
+      std::count_if(expected.plan.holes.begin(), expected.plan.holes.end(), is_shut_in));
 }
 
 void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
   for (std::size_t i = 0; i < plan.holes.size(); ++i) {
     const Tube& tube = plan.holes[i].tube;
-    const Mesh part = part_of(read_back, facets_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
+    const Mesh part = part_of(read_back, triangles_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
     const SelfIntersections found = find_self_intersections(part);
     if (found.pair_count == 0) continue;
     const Vec3d place = found.places.front();
@@ -186,20 +185,20 @@ void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
 }
 
 // Least distance between the channels' sides and the surface, and no less than it is by half of kSpacing.
-double channel_wall(const Mesh& model, const DrainagePlan& plan) {
-  std::vector<Vec3d> points;
-  std::vector<double> radii;
+double channel_wall(const SurfaceIndex& surface, const DrainagePlan& plan) {
+  double least = std::numeric_limits<double>::infinity();
   for (const Channel& channel : plan.channels) {
     const Vec3d along = channel.tube.end - channel.tube.start;
     const auto steps = static_cast<std::size_t>(std::ceil(length(along) / kSpacing)) + 1;
     for (std::size_t i = 0; i <= steps; ++i) {
-      points.push_back(channel.tube.start + along * (static_cast<double>(i) / static_cast<double>(steps)));
-      radii.push_back(channel.tube.radius);
+      const Vec3d point =
+          channel.tube.start + along * (static_cast<double>(i) / static_cast<double>(steps));
+      // Only what is nearer than the least so far is of interest.
+      const double limit = least + channel.tube.radius;
+      const double nearest = surface.bvh().nearest(point, limit * limit).distance_squared;
+      least = std::min(least, std::sqrt(nearest) - channel.tube.radius);
     }
   }
-  double least = std::numeric_limits<double>::infinity();
-  const std::vector<double> distances = distances_to_surface(model, points);
-  for (std::size_t i = 0; i < points.size(); ++i) least = std::min(least, distances[i] - radii[i]);
   return least - kSpacing / 2;
 }
 
@@ -244,7 +243,7 @@ void measure_volumes(const Mesh& read_back, const ExpectedDrained& expected, Out
 }
 
 Clearances measure_limits(const std::vector<Sphere>& balls, const ExpectedDrained& expected) {
-  const Clearances clearances = measure_clearances(expected.model, balls, expected.plan.roof);
+  const Clearances clearances = measure_clearances(expected.surface, balls, expected.plan.roof);
   if (clearances.wall < expected.limits.wall - kLimitError)
     fail_check("the wall is {:.9g} mm, the limit {:.9g} mm", clearances.wall, expected.limits.wall);
   if (clearances.gap && *clearances.gap < expected.limits.gap - kLimitError)
@@ -266,22 +265,8 @@ std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const Ex
 
 }  // namespace
 
-std::vector<Triangle> outward_shells(const Mesh& model, const Inspection& inspection) {
-  const bool has_cavities = std::any_of(inspection.shells.begin(), inspection.shells.end(),
-                                        [](const Shell& shell) { return shell.volume < 0; });
-  if (!has_cavities) return model.triangles;
-  const ShellLabels labels = label_shells(model, EdgeUses(model));
-  const std::vector<Shell> shells = describe_shells(model, labels);
-  std::vector<Triangle> outward;
-  for (std::size_t i = 0; i < model.triangles.size(); ++i) {
-    const std::uint32_t label = labels.of_triangle[i];
-    if (label != kNoShell && shells[label].volume >= 0) outward.push_back(model.triangles[i]);
-  }
-  return outward;
-}
-
-bool is_crossed_near(const FacetsNear& model, const Tube& tube) {
-  const Mesh part = part_of(model.mesh(), model.find(cut_of(tube), tube.radius + kNeighbourhood));
+bool is_crossed_near(const Mesh& model, const SurfaceIndex& surface, const Tube& tube) {
+  const Mesh part = part_of(model, surface.triangles_near(cut_of(tube), tube.radius + kNeighbourhood));
   return find_self_intersections(part).pair_count > 0;
 }
 
@@ -300,7 +285,7 @@ OutputFacts check_drained(const Mesh& read_back, const ExpectedDrained& expected
   const DrainedParts parts =
       check_drained_parts(read_back, solid, expected.balls, expected.plan, expected.tolerance, monitor);
   check_tube_gaps(expected.balls, expected.plan, expected.limits.gap);
-  drainage.channel_wall = channel_wall(expected.model, expected.plan);
+  drainage.channel_wall = channel_wall(expected.surface, expected.plan);
   if (drainage.channel_wall < expected.limits.wall - kSpacing / 2 - kLimitError)
     fail_check("the wall beside a channel is {:.9g} mm, the limit {:.9g} mm", drainage.channel_wall,
                expected.limits.wall);

@@ -3,11 +3,11 @@
 #include <span>
 
 #include "core/drainage.h"
-#include "core/facets_near.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "core/solid.h"
+#include "core/surface_index.h"
 #include "mesh/inspect.h"
 #include "pipeline/drainage_facts.h"
 #include "pipeline/report.h"
@@ -18,6 +18,7 @@ namespace aerate {
 struct ExpectedDrained {
   const DrainedSolid& solid;     // what was written
   const Mesh& model;             // what was packed
+  const SurfaceIndex& surface;   // of `model`
   const Inspection& inspection;  // of `model`: flaws that the output may keep
   std::span<const Sphere> balls;
   const DrainagePlan& plan;
@@ -25,12 +26,9 @@ struct ExpectedDrained {
   double tolerance = 0;  // mm
 };
 
-// The triangles of shells that bound a model outside: all but those of its own cavities.
-std::vector<Triangle> outward_shells(const Mesh& model, const Inspection& inspection);
-
-// Whether the model runs through itself near a tube's outer end. A hole there could not be told from such a
-// flaw.
-bool is_crossed_near(const FacetsNear& model, const Tube& tube);
+// Whether the model, given with its index, runs through itself near a tube's outer end. A hole there could not
+// be told from such a flaw.
+bool is_crossed_near(const Mesh& model, const SurfaceIndex& surface, const Tube& tube);
 
 // Checks and measures a mesh that was read back from disk, its vertices welded:
 //   - every triangle is the one that was written, coordinate for coordinate; the first ones are the model's,

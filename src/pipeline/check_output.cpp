@@ -79,10 +79,10 @@ void require_sound_outer(const Mesh& outer, const Inspection& model) {
 // The wall and the gap hold round the measured balls, and these lie where the model is solid once. The latter
 // needs no new look if the surface was kept: neither the triangles nor the centres have changed since the
 // packing was verified.
-Clearances measure_limits(const Mesh& outer, const std::vector<Sphere>& balls,
+Clearances measure_limits(const SurfaceIndex& outer, const std::vector<Sphere>& balls,
                           const ExpectedOutput& expected) {
   const PackingLimits& limits = expected.limits;
-  if (expected.surface == OuterSurface::remeshed) {
+  if (expected.outer == OuterSurface::remeshed) {
     const PackingLimits written{.wall = 0,
                                 .gap = 0,
                                 .min_radius = 0,
@@ -148,13 +148,15 @@ OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected, 
   const Solid& solid = expected.solid;
   require_same_triangles(read_back, solid.mesh, "the result", monitor);
   std::optional<Mesh> remeshed;
-  if (expected.surface == OuterSurface::kept) {
+  if (expected.outer == OuterSurface::kept) {
     require_kept_outer(read_back, expected, monitor);
   } else {
     remeshed = first_triangles(read_back, solid.outer_triangle_count);
     require_sound_outer(*remeshed, expected.inspection);
   }
   const Mesh& outer = remeshed ? *remeshed : expected.model;
+  std::optional<SurfaceIndex> remeshed_surface;
+  if (remeshed) remeshed_surface.emplace(*remeshed);
   const VoidTotals voids = add_up(check_voids(read_back, solid, expected.plan, expected.tolerance, monitor));
   monitor.check_interrupted();
 
@@ -171,7 +173,7 @@ OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected, 
       std::count_if(expected.plan.spheres.begin(), expected.plan.spheres.end(),
                     [&](const Sphere& planned) { return expected.plan.roof.shapes(planned.radius); }));
   facts.ceilings = measure_limited_ceilings(read_back, expected, monitor);
-  facts.clearances = measure_limits(outer, voids.balls, expected);
+  facts.clearances = measure_limits(remeshed_surface ? *remeshed_surface : expected.surface, voids.balls, expected);
   monitor.check_interrupted();
 
   const VolumeMoments outer_moments = volume_moments(outer);

@@ -4,6 +4,7 @@
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "core/solid.h"
+#include "core/surface_index.h"
 #include "core/void_plan.h"
 #include "mesh/inspect.h"
 #include "pipeline/report.h"
@@ -14,11 +15,12 @@ namespace aerate {
 struct ExpectedOutput {
   const Solid& solid;            // what was written
   const Mesh& model;             // what was packed
+  const SurfaceIndex& surface;   // of `model`
   const Inspection& inspection;  // of `model`: flaws that the output may keep
   const VoidPlan& plan;
   const PackingLimits& limits;
   double tolerance = 0;  // mm
-  OuterSurface surface = OuterSurface::kept;
+  OuterSurface outer = OuterSurface::kept;
 };
 
 // Checks and measures a mesh that was read back from disk, its vertices welded and numbered in order of first

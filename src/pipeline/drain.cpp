@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "pipeline/check_drained.h"
+#include "pipeline/outward_shells.h"
 #include "printing/carve_drained.h"
 
 namespace aerate {
@@ -19,6 +20,9 @@ namespace {
 // By this factor the tolerance is loosened, so many times at most.
 constexpr double kLooser = 1.25;
 constexpr int kMostTries = 12;
+
+// Places at which the surface turns out not to be cut before it is left to the carver to say so.
+constexpr std::size_t kMostRefused = 100;
 
 // Above this share of the voids' volume pools are worth a notice.
 constexpr double kPoolsAimedAt = 0.01;
@@ -49,25 +53,37 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
 
 }  // namespace
 
-DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const DrainageRequest& request,
-                            double tolerance, Monitor& monitor) {
-  const std::vector<Triangle> outward = outward_shells(model.mesh, model.inspection);
-  const FacetsNear facets(model.mesh);
-  const auto way_of = [&](const EscapeHole& hole) { return WayOut{hole.tube, packing.spheres[hole.from]}; };
-  const auto can_open = [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
-    std::vector<WayOut> before;
-    for (const EscapeHole& other : others) before.push_back(way_of(other));
-    return can_cut(facets, way_of(hole), before, packing.limits.roof, tolerance) &&
-           !is_crossed_near(facets, hole.tube);
+DrainageFacts drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
+                            const DrainageRequest& request, double tolerance, Monitor& monitor) {
+  const OutwardShells outward(model.mesh, model.inspection, surface);
+  std::vector<Tube> refused;
+  const auto can_open = [&](const EscapeHole& hole) {
+    const auto is_it = [&](const Tube& tube) {
+      return tube.start == hole.tube.start && tube.end == hole.tube.end;
+    };
+    const WayOut way{hole.tube, packing.spheres[hole.from]};
+    return std::none_of(refused.begin(), refused.end(), is_it) &&
+           may_be_cut(model.mesh, surface, way, packing.limits.roof, tolerance) &&
+           !is_crossed_near(model.mesh, surface, hole.tube);
   };
-  PlannedDrainage planned = plan_drainage({model.mesh, outward}, packing, request, can_open, monitor);
-  const std::size_t packed = packing.spheres.size();
-  std::vector<Sphere> kept;
-  for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
-  packing.spheres = std::move(kept);
-  DrainageFacts drainage{.request = request, .plan = std::move(planned.plan), .dropped = planned.dropped};
-  tell_what_was_dropped(drainage, packed, monitor);
-  return drainage;
+  // Cutting takes longer than all the rest, so it is tried on a whole plan, and places where it fails, which
+  // looked as if it would not, are avoided by the next.
+  while (true) {
+    PlannedDrainage planned =
+        plan_drainage({surface, outward.winding()}, packing, request, can_open, monitor);
+    std::vector<Sphere> kept;
+    for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
+    const auto uncut = first_uncut_hole(model.mesh, kept, planned.plan, {.tolerance = tolerance}, monitor);
+    if (uncut && refused.size() < kMostRefused) {
+      refused.push_back(planned.plan.holes[*uncut].tube);
+      continue;
+    }
+    const std::size_t packed = packing.spheres.size();
+    packing.spheres = std::move(kept);
+    DrainageFacts drainage{.request = request, .plan = std::move(planned.plan), .dropped = planned.dropped};
+    tell_what_was_dropped(drainage, packed, monitor);
+    return drainage;
+  }
 }
 
 void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,

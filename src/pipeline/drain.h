@@ -6,6 +6,7 @@
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "core/solid.h"
+#include "core/surface_index.h"
 #include "pipeline/drainage_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/prepare.h"
@@ -13,9 +14,9 @@
 namespace aerate {
 
 // Plans how the voids of a packing drain, and takes those out of it that cannot, with a notice of how many
-// and why. `tolerance` is that of the void surfaces, mm. Throws what plan_drainage throws.
-DrainageFacts drain_packing(const PreparedModel& model, Packing& packing, const DrainageRequest& request,
-                            double tolerance, Monitor& monitor);
+// and why. `surface` is the model's, `tolerance` is that of the void surfaces, mm. Throws what plan_drainage throws.
+DrainageFacts drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
+                            const DrainageRequest& request, double tolerance, Monitor& monitor);
 
 // What the user should know about channels and escape holes that are wider than the printer bridges, if it
 // limits ceilings.

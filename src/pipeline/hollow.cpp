@@ -63,6 +63,7 @@ OutputFacts check_written(const Mesh& written, const HollowedModel& hollowed, Ho
     return check_drained(written,
                          {.solid = *hollowed.drained,
                           .model = hollowed.model.mesh,
+                          .surface = hollowed.surface,
                           .inspection = hollowed.model.inspection,
                           .balls = hollowed.plan.spheres,
                           .plan = report.drainage->plan,
@@ -73,11 +74,12 @@ OutputFacts check_written(const Mesh& written, const HollowedModel& hollowed, Ho
   return check_output(written,
                       {.solid = hollowed.solid,
                        .model = hollowed.model.mesh,
+                       .surface = hollowed.surface,
                        .inspection = hollowed.model.inspection,
                        .plan = hollowed.plan,
                        .limits = report.limits,
                        .tolerance = report.tolerance_used,
-                       .surface = report.surface},
+                       .outer = report.surface},
                       monitor);
 }
 
@@ -123,13 +125,13 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   report.outer_deviation = model.outer_deviation;
   report.volume_estimated = model.inspection.parts_overlap();
 
-  Packing packing = pack_model(model, request, monitor);
+  auto [packing, surface] = pack_model(model, request, monitor);
   report.packing_statistics = packing.statistics;
   report.packing_device = packing.device;
   if (options.drainage) {
     monitor.stage("drain");
     warn_of_wide_tubes(request.process, request.limits.roof, *options.drainage, monitor);
-    report.drainage = drain_packing(model, packing, *options.drainage, options.tolerance, monitor);
+    report.drainage = drain_packing(model, surface, packing, *options.drainage, options.tolerance, monitor);
   }
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
@@ -149,7 +151,8 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   Solid solid =
       drained ? as_solid(*drained) : carve(model, plan, {.tolerance = report.tolerance_used}, monitor);
   monitor.check_interrupted();
-  return {std::move(report), std::move(plan), std::move(model), std::move(solid), std::move(drained)};
+  return {std::move(report), std::move(plan),  std::move(model),
+          std::move(surface), std::move(solid), std::move(drained)};
 }
 
 HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor) {

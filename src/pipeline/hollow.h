@@ -4,6 +4,7 @@
 
 #include "core/monitor.h"
 #include "core/solid.h"
+#include "core/surface_index.h"
 #include "core/void_plan.h"
 #include "pipeline/options.h"
 #include "pipeline/prepare.h"
@@ -21,6 +22,7 @@ struct HollowedModel {
   HollowReport report;  // all but what is measured on the written file, and the stages
   VoidPlan plan;
   PreparedModel model;
+  SurfaceIndex surface;  // of the model
   Solid solid;
   std::optional<DrainedSolid> drained;  // what `solid` was made of, if its voids drain
 };

@@ -85,10 +85,11 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
 }
 
 // Says what would fit, and which limit stands in the way.
-[[noreturn]] void refuse_empty(const PreparedModel& model, const PackingRequest& request) {
+[[noreturn]] void refuse_empty(const PreparedModel& model, const SurfaceIndex& surface,
+                               const PackingRequest& request) {
   const PackingLimits& limits = request.limits;
   const std::string file = model.input.path.filename().string();
-  const Sphere largest = largest_inscribed_sphere(model.mesh);
+  const Sphere largest = largest_inscribed_sphere(surface);
   // Rounded first, so that nothing reads as -0.0.
   const auto tenths = [](double coordinate) { return std::round(coordinate * 10) / 10 + 0.0; };
   const std::string place = fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", tenths(largest.centre.x),
@@ -139,23 +140,24 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
 
 }  // namespace
 
-Packing pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
+PackedModel pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
   require_memory_for_packing(model.mesh, request);
   monitor.stage("pack");
   Packing packing = pack_unverified(model.mesh, request, monitor);
   monitor.check_interrupted();
 
   monitor.stage("verify");
-  packing = verify_packing(model.mesh, std::move(packing));
+  SurfaceIndex surface(model.mesh);
+  packing = verify_packing(surface, std::move(packing));
   monitor.check_interrupted();
-  if (packing.spheres.empty()) refuse_empty(model, request);
+  if (packing.spheres.empty()) refuse_empty(model, surface, request);
 
   if (model.inspection.parts_overlap() && packing.statistics.overlapped_region > 0)
     monitor.notice(
         fmt::format("parts of the model overlap in about {:.3g} mm3, which stay solid; --surface "
                     "remesh unites the parts first",
                     model.inspection.overlapped_volume));
-  return packing;
+  return {std::move(packing), std::move(surface)};
 }
 
 PackReport pack(const PackOptions& options, Monitor& monitor) {
@@ -171,11 +173,12 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   AnnouncedFile table(options.output, log);
   model = make_usable(std::move(model), {.mode = SurfaceMode::keep}, log);
   report.input = model.input;
-  report.packing = pack_model(model, options.packing, log);
+  auto [packing, surface] = pack_model(model, options.packing, log);
+  report.packing = std::move(packing);
   report.density = total_volume(report.packing) / model.inspection.filled_volume;
 
   log.stage("measure");
-  report.clearances = measure_clearances(model.mesh, report.packing.spheres, options.packing.limits.roof);
+  report.clearances = measure_clearances(surface, report.packing.spheres, options.packing.limits.roof);
   log.stage("write");
   table.commit_text(sphere_table(report.packing, format));
   report.stages = log.finish();

@@ -125,7 +125,7 @@ PreparedModel remesh(PreparedModel model, const SurfacePolicy& policy, Monitor& 
   std::vector<Vec3d> vertices(model.mesh.positions.size());
   std::transform(model.mesh.positions.begin(), model.mesh.positions.end(), vertices.begin(),
                  [](Vec3f position) { return to_double(position); });
-  const std::vector<double> distances = distances_to_surface(original, vertices);
+  const std::vector<double> distances = SurfaceIndex(original).distances(vertices);
   model.outer_deviation = *std::max_element(distances.begin(), distances.end());
   return model;
 }

@@ -155,7 +155,8 @@ TEST(TubeClearances, ATubeThatComesOutTooObliquelyIsRefused) {
   const Mesh box = test::make_box({0, 0, 0}, {40, 40, 40});
   const std::vector<Sphere> spheres{ball({20, 20, 20}, 5)};
   const PackingLimits limits{.wall = 2, .gap = 1, .min_radius = 1, .max_radius = 5};
-  const TubeClearance clearance(box, spheres, limits, 20, 2);
+  const SurfaceIndex surface(box);
+  const TubeClearance clearance(surface, spheres, limits, 20, 2);
   const auto towards = [&](double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     const Vec3d direction{std::cos(angle), 0, -std::sin(angle)};
@@ -169,14 +170,17 @@ TEST(TubeClearances, ATubeThatComesOutTooObliquelyIsRefused) {
   // A place between samples: a thin slot that comes within half the wall of the tube.
   const Mesh slotted =
       test::join(box, test::turned_inside_out(test::make_box({22, 19.99F, 6}, {30, 20.01F, 6.02F})));
-  const TubeClearance beside(slotted, spheres, limits, 20, 2);
+  const SurfaceIndex slotted_surface(slotted);
+  const TubeClearance beside(slotted_surface, spheres, limits, 20, 2);
   EXPECT_FALSE(beside.keeps_wall_on_way_out(towards(90), 0.5));
 }
 
 TEST(TubeClearances, WhereARayMeetsTheSurface) {
   const Mesh box = test::make_box({0, 0, 0}, {40, 40, 40});
   const std::vector<Sphere> spheres{ball({20, 20, 20}, 5)};
-  const TubeClearance clearance(box, spheres, {.wall = 2, .gap = 1, .min_radius = 1, .max_radius = 5}, 20, 2);
+  const SurfaceIndex surface(box);
+  const TubeClearance clearance(surface, spheres, {.wall = 2, .gap = 1, .min_radius = 1, .max_radius = 5}, 20,
+                                2);
   EXPECT_NEAR(clearance.first_hit({20, 21, 12}, {0, 0, -1}, 50).value(), 12, 1e-12);
   EXPECT_NEAR(clearance.first_hit({20, 21, 12}, {0.6, 0, 0.8}, 50).value(), 20 / 0.6, 1e-9);
   EXPECT_FALSE(clearance.first_hit({20, 21, 12}, {0, 0, -1}, 11).has_value());
@@ -193,9 +197,10 @@ class PlanDrainage : public testing::Test {
   }
   PlannedDrainage plan(const std::vector<Triangle>& outward) const {
     Monitor silent;
+    const SurfaceIndex surface(mesh_);
+    const kernels::HostWinding winding(mesh_.positions, outward);
     return plan_drainage(
-        {mesh_, outward}, packing_, request_,
-        [](const EscapeHole&, std::span<const EscapeHole>) { return true; }, silent);
+        {surface, winding.view()}, packing_, request_, [](const EscapeHole&) { return true; }, silent);
   }
   PlannedDrainage plan() const { return plan(mesh_.triangles); }
 
@@ -341,10 +346,11 @@ TEST_F(PlanDrainage, WhatCannotBeIsRefusedWithWhatToDo) {
 TEST_F(PlanDrainage, WhereNoHoleCanBeCutNothingIsMade) {
   pack(test::make_box({0, 0, 0}, {50, 40, 40}));
   Monitor silent;
-  EXPECT_THROW(plan_drainage(
-                   {mesh_, mesh_.triangles}, packing_, request_,
-                   [](const EscapeHole&, std::span<const EscapeHole>) { return false; }, silent),
-               NothingToRemoveError);
+  const SurfaceIndex surface(mesh_);
+  EXPECT_THROW(
+      plan_drainage(
+          {surface, surface.winding()}, packing_, request_, [](const EscapeHole&) { return false; }, silent),
+      NothingToRemoveError);
 }
 
 TEST_F(PlanDrainage, IsTheSameEveryTime) {

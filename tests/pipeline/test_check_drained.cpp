@@ -13,6 +13,7 @@
 #include "packing/tube_through.h"
 #include "pipeline/check_drained.h"
 #include "pipeline/drain.h"
+#include "pipeline/outward_shells.h"
 #include "pipeline/solid_file.h"
 #include "printing/carve_drained.h"
 #include "tests/support/caught.h"
@@ -52,15 +53,15 @@ class CheckDrained : public testing::Test {
     Sound sound{std::move(model), {}, {}, {}};
     Monitor silent;
     Packing packing = pack_adaptive(sound.model, kLimits, {}, silent);
-    const std::vector<Triangle> outward = outward_shells(sound.model, inspect(sound.model));
-    const FacetsNear facets(sound.model);
+    const SurfaceIndex surface(sound.model);
+    const OutwardShells outward(sound.model, inspect(sound.model), surface);
     const PlannedDrainage planned = plan_drainage(
-        {sound.model, outward}, packing, {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}},
-        [&](const EscapeHole& hole, std::span<const EscapeHole> others) {
-          std::vector<WayOut> before;
-          for (const EscapeHole& other : others) before.push_back({other.tube, packing.spheres[other.from]});
-          return can_cut(facets, {hole.tube, packing.spheres[hole.from]}, before, kLimits.roof, kTolerance) &&
-                 !is_crossed_near(facets, hole.tube);
+        {surface, outward.winding()}, packing,
+        {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {}},
+        [&](const EscapeHole& hole) {
+          return may_be_cut(sound.model, surface, {hole.tube, packing.spheres[hole.from]}, kLimits.roof,
+                            kTolerance) &&
+                 !is_crossed_near(sound.model, surface, hole.tube);
         },
         silent);
     for (const std::uint32_t i : planned.kept) sound.balls.push_back(packing.spheres[i]);
@@ -74,6 +75,7 @@ class CheckDrained : public testing::Test {
     return check_drained(as_read_back(solid_.mesh),
                          {.solid = solid_,
                           .model = model_,
+                          .surface = model_,
                           .inspection = inspect(model_),
                           .balls = balls_,
                           .plan = plan_,
@@ -232,6 +234,7 @@ TEST_F(CheckDrained, WhatFailsIsNeverWritten) {
       check_drained(written,
                     {.solid = solid_,
                      .model = model_,
+                     .surface = model_,
                      .inspection = inspect(model_),
                      .balls = balls_,
                      .plan = plan_,
@@ -273,10 +276,12 @@ TEST_F(CheckDrainedWithCavity, AHoleIntoTheCavityIsSealed) {
   Packing packing;
   packing.spheres = balls_;
   packing.limits = limits_;
+  const SurfaceIndex surface(model_);
+  const kernels::HostWinding nothing(model_.positions, {});
   const PlannedDrainage planned = plan_drainage(
-      {model_, {}}, packing,
+      {surface, nothing.view()}, packing,
       {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {{20, 15, 30}, {12, 15, 30}}},
-      [](const EscapeHole&, std::span<const EscapeHole>) { return true; }, silent);
+      [](const EscapeHole&) { return true; }, silent);
   std::vector<Sphere> kept;
   for (const std::uint32_t i : planned.kept) kept.push_back(balls_[i]);
   balls_ = kept;

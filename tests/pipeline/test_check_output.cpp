@@ -38,6 +38,7 @@ class CheckOutput : public testing::Test {
     return check_output(written,
                         {.solid = solid_,
                          .model = model_,
+                         .surface = model_,
                          .inspection = inspect(model_),
                          .plan = plan_,
                          .limits = limits_,

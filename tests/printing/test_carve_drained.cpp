@@ -1,15 +1,20 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <tbb/global_control.h>
 #include <vector>
 
 #include "core/roof.h"
 #include "core/top_opening.h"
+#include "printing/ball_template.h"
 #include "printing/carve_drained.h"
 #include "printing/cut_surface.h"
+#include "printing/open_ball.h"
+#include "tests/support/caught.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shells.h"
 
@@ -56,6 +61,10 @@ class CarveDrained : public testing::Test {
   DrainedSolid carve(double tolerance = kTolerance) const {
     Monitor silent;
     return carve_drained(model_, spheres_, plan_, {.tolerance = tolerance}, silent);
+  }
+  std::optional<std::size_t> first_uncut(const Mesh& model) const {
+    Monitor silent;
+    return first_uncut_hole(model, spheres_, plan_, {.tolerance = kTolerance}, silent);
   }
 
   Mesh model_ = test::make_box({0, 0, 0}, {40, 30, 30});
@@ -202,25 +211,84 @@ TEST_F(CarveDrained, TheSameBytesForAnyNumberOfThreads) {
 
 TEST_F(CarveDrained, AHoleIsNotCutWhereTheSurfaceIsNoSinglePiece) {
   const WayOut way{plan_.holes[0].tube, spheres_[0]};
-  EXPECT_TRUE(can_cut(FacetsNear(model_), way, {}, Roof{}, kTolerance));
+  EXPECT_TRUE(may_be_cut(model_, model_, way, Roof{}, kTolerance));
+  EXPECT_EQ(first_uncut(model_), std::nullopt);
   // Another surface a little below the first.
   const Mesh doubled = test::join(model_, test::make_box({0, 0, -3}, {40, 30, -2}));
-  EXPECT_FALSE(can_cut(FacetsNear(doubled), way, {}, Roof{}, kTolerance));
+  EXPECT_FALSE(may_be_cut(doubled, doubled, way, Roof{}, kTolerance));
+  EXPECT_EQ(first_uncut(doubled), 0);
   // It stops short of the surface.
   const Mesh larger = test::make_box({0, 0, -20}, {40, 30, 30});
-  EXPECT_FALSE(can_cut(FacetsNear(larger), way, {}, Roof{}, kTolerance));
+  EXPECT_FALSE(may_be_cut(larger, larger, way, Roof{}, kTolerance));
+  EXPECT_EQ(first_uncut(larger), 0);
+  model_ = larger;
+  EXPECT_TRUE(test::contains(test::message_of<FailureError>([this] { carve(); }), "cannot be cut"));
+}
+
+// The hull by brute force: no point is beyond the plane of any triangle, and what is open are the rims.
+TEST(OpenBall, IsTheHullLessWhatIsInsideTheRims) {
+  const Sphere sphere{{3, -2, 7}, 5, SphereKind::adaptive};
+  BallLadder ladder;
+  for (const double tolerance : {0.3, 0.05, 0.01}) {
+    const BallTemplate& ball = ladder[ladder.level_for(sphere, tolerance)];
+    StarTriangulation whole(ball.directions, ball.triangles);
+    ASSERT_TRUE(whole.connect());
+    std::vector<Opening> openings;
+    for (const Vec3d direction : {Vec3d{0, 0, 1}, Vec3d{0.6, 0, -0.8}, Vec3d{-0.48, 0.6, -0.64}}) {
+      const Vec3d inside = sphere.centre + Vec3d{0.4, 0.3, 0.2};
+      const Tube tube{inside, inside + direction * 9, 1.2};
+      openings.push_back({tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, sphere, {0, 0, 1}, 32)});
+    }
+    const auto opened = open_ball(sphere, whole, openings);
+    ASSERT_TRUE(opened) << tolerance;
+    ASSERT_GT(opened->positions.size(), 3 * 32 + (tolerance < 0.1 ? 100U : 0U));
+    std::set<std::array<std::uint32_t, 2>> sides;
+    for (const Triangle& t : opened->triangles) {
+      const Vec3d a = opened->positions[t[0]];
+      Vec3d normal = cross(opened->positions[t[1]] - a, opened->positions[t[2]] - a);
+      normal = normal * (1 / length(normal));
+      EXPECT_GE(dot(normal, a - sphere.centre), opened->nearest);
+      for (const Vec3d p : opened->positions) ASSERT_LT(dot(normal, p - a), 1e-8);
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_TRUE(sides.insert({t[k], t[(k + 1) % 3]}).second) << "a side that two triangles share";
+    }
+    std::size_t open = 0;
+    for (const auto& [from, to] : sides) {
+      if (sides.contains({to, from})) continue;
+      ++open;
+      EXPECT_TRUE(from < 96 && to < 96 && from / 32 == to / 32 && from % 32 == (to + 1) % 32)
+          << from << " -> " << to;
+    }
+    EXPECT_EQ(open, 96);
+  }
+}
+
+TEST(OpenBall, RefusesOpeningsThatMeet) {
+  const Sphere sphere{{0, 0, 0}, 5, SphereKind::adaptive};
+  BallLadder ladder;
+  const BallTemplate& ball = ladder[ladder.level_for(sphere, 0.05)];
+  StarTriangulation whole(ball.directions, ball.triangles);
+  ASSERT_TRUE(whole.connect());
+  std::vector<Opening> openings;
+  for (const double x : {0.0, 1.0}) {
+    const Tube tube{{x, 0, 0}, {x, 0, 9}, 1.2};
+    openings.push_back({tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, sphere, {0, 0, 1}, 32)});
+  }
+  EXPECT_FALSE(open_ball(sphere, whole, openings));
+  openings.pop_back();
+  EXPECT_TRUE(open_ball(sphere, whole, openings));
 }
 
 // Both holes come out of one triangle: the second meets what the first has left of it.
 TEST_F(CarveDrained, TwoHolesThroughOneTriangle) {
   plan_.holes[1].tube = {{27, 15, 8.9}, {27, 15, 0}, 2};
-  const std::vector<WayOut> first{{plan_.holes[0].tube, spheres_[0]}};
-  ASSERT_TRUE(can_cut(FacetsNear(model_), {plan_.holes[1].tube, spheres_[1]}, first, Roof{}, kTolerance));
+  ASSERT_EQ(first_uncut(model_), std::nullopt);
   const DrainedSolid solid = carve();
   EXPECT_TRUE(test::is_closed_manifold(solid.mesh));
   EXPECT_LE(solid.cut_triangles.size(), 2U);
   // A hole where there is one already.
-  EXPECT_FALSE(can_cut(FacetsNear(model_), first[0], first, Roof{}, kTolerance));
+  plan_.holes.push_back(plan_.holes[0]);
+  EXPECT_EQ(first_uncut(model_), 2);
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/facets_near.h"
 #include "core/roof.h"
 #include "core/segment_distance.h"
+#include "core/surface_index.h"
 #include "kernels/point_triangle.h"
 #include "tests/support/shapes.h"
 
@@ -83,14 +83,14 @@ TEST(SegmentDistance, ToVoidsWithRoofs) {
   }
 }
 
-TEST(FacetsNear, AreTheSameByHierarchyAndByLookingAtAll) {
+TEST(SurfaceIndex, TrianglesNearAreTheSameByHierarchyAndByLookingAtAll) {
   const Mesh sphere = test::make_uv_sphere(10, 40, 60);
-  const FacetsNear index(sphere);
+  const SurfaceIndex index(sphere);
   for (const double reach : {0.3, 1.0, 4.0}) {
     const Segment segment{{0, 0, 0}, {9, 6, 4}};
-    const std::vector<std::uint32_t> found = index.find(segment, reach);
+    const std::vector<std::uint32_t> found = index.triangles_near(segment, reach);
     EXPECT_FALSE(found.empty());
-    EXPECT_EQ(found, facets_near(sphere, segment, reach));
+    EXPECT_EQ(found, triangles_near(sphere, segment, reach));
   }
 }
 
