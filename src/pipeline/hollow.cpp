@@ -151,7 +151,7 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   Solid solid =
       drained ? as_solid(*drained) : carve(model, plan, {.tolerance = report.tolerance_used}, monitor);
   monitor.check_interrupted();
-  return {std::move(report), std::move(plan),  std::move(model),
+  return {std::move(report),  std::move(plan),  std::move(model),
           std::move(surface), std::move(solid), std::move(drained)};
 }
 
