@@ -140,15 +140,31 @@ FailureError too_many_triangles(const Sphere& ball, double tolerance) {
 }
 
 void BallLadder::prepare(std::span<const Sphere> balls, double tolerance) {
-  std::vector<std::size_t> wanted;
+  struct Search {
+    const Sphere* ball;
+    std::size_t level;
+  };
+  std::vector<Search> searches;
   for (const Sphere& ball : balls) {
     const double sagitta = allowed_sagitta(ball, tolerance);
-    const std::size_t level = sagitta > 0 ? likely_level(sagitta) : kLevelCount;
-    if (level < kLevelCount && !levels_[level]) wanted.push_back(level);
+    if (sagitta > 0) searches.push_back({&ball, likely_level(sagitta)});
   }
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) { make(wanted[i]); });
+  const auto is_over = [&](Search& search) {
+    for (; search.level < kLevelCount && levels_[search.level]; ++search.level) {
+      const std::optional<BallTemplate>& made = levels_[search.level]->ball;
+      if (made && suits(*made, *search.ball, tolerance)) return true;
+    }
+    return search.level >= kLevelCount;
+  };
+  while (true) {
+    std::erase_if(searches, is_over);
+    if (searches.empty()) return;
+    std::vector<std::size_t> wanted;
+    for (const Search& search : searches) wanted.push_back(search.level);
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) { make(wanted[i]); });
+  }
 }
 
 }  // namespace aerate

@@ -51,7 +51,7 @@ class BallLadder {
   // if that took more than about a million triangles.
   std::size_t level_for(const Sphere& ball, double tolerance);
 
-  // Makes the levels that `level_for` will probably ask for, in parallel.
+  // Makes the levels that `level_for` will ask for, in parallel.
   void prepare(std::span<const Sphere> balls, double tolerance);
 
   // Of any level below kLevelCount, made if it is not yet; null if there is none at this refinement.

@@ -8,15 +8,17 @@
 #include <numeric>
 #include <string>
 #include <tbb/parallel_for.h>
+#include <utility>
+#include <variant>
 
 #include "core/error.h"
 #include "core/top_opening.h"
 #include "printing/ball_template.h"
-#include "printing/cut_surface.h"
 #include "printing/open_ball.h"
 #include "printing/roof_top.h"
 #include "printing/rounding.h"
 #include "printing/star_triangulation.h"
+#include "printing/tube_openings.h"
 
 namespace aerate {
 namespace {
@@ -26,41 +28,9 @@ namespace {
 constexpr double kFinerStep = 0.8;
 constexpr int kMostSteps = 10;
 
-// A prism begins this much inside its ball's surface, and ends beyond the model's by this many radii, mm.
-constexpr double kPrismMargin = 0.02;
-constexpr double kPrismBeyond = 1.8;
-
 // Edges of a roof's circle, in the least distances of openings from it. With 2 an opening's rim could be as
 // near to the middle of an edge as its ends are.
 constexpr double kEdgePerSpacing = 1.5;
-
-Sphere shrunk(const Roof& roof, const Sphere& ball) {
-  Sphere smaller = ball;
-  smaller.radius -=
-      roof.shapes(ball.radius) ? ball.radius * void_shrinkage(roof, ball) : rounding_margin(ball);
-  return smaller;
-}
-
-Tube shrunk(const Tube& tube) {
-  Tube smaller = tube;
-  const Vec3d middle = (tube.start + tube.end) * 0.5;
-  const double half = length(tube.end - tube.start) / 2;
-  smaller.radius -= rounding_margin({middle, half + tube.radius, SphereKind::adaptive});
-  return smaller;
-}
-
-// Fine enough for openings that a tube meets obliquely: their edges are up to 2.5 times as long as its own.
-std::size_t sides_of(const Tube& tube, double tolerance) {
-  return tube_sides(tube.radius, tolerance / 8);
-}
-
-Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof, std::size_t sides) {
-  Opening opening{shrunk(tube), end, {}};
-  opening.ring = ring_on_ball(opening.tube, end, shrunk(roof, ball), roof.up, sides);
-  // Counter-clockwise seen from outside the ball.
-  if (end == TubeEnd::end) std::reverse(opening.ring.begin(), opening.ring.end());
-  return opening;
-}
 
 // Of the circle at which the roof of a void begins. Its edges are short enough for the openings beside it, of
 // which `thinnest` is the least radius.
@@ -122,38 +92,6 @@ void close_above(Part& part, const Sphere& ball, const Roof& roof, double tolera
                           added.begin() + static_cast<std::ptrdiff_t>(of_cone));
 }
 
-CuttingPrism prism_of(const Tube& tube, const Opening& opening) {
-  const Vec3d along = tube.end - tube.start;
-  CuttingPrism prism;
-  prism.axis = along * (1 / length(along));
-  prism.start = tube.start - prism.axis * kPrismMargin;
-  prism.length = length(along) + kPrismMargin + kPrismBeyond * tube.radius;
-  prism.radius = tube.radius;
-  for (const Vec3d p : opening.ring) prism.ring.push_back(to_float(p));
-  return prism;
-}
-
-// Without the elements at these places, ascending.
-template <typename T>
-void remove_at(std::vector<T>& values, std::span<const std::uint32_t> places) {
-  std::size_t kept = 0, next = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (next < places.size() && places[next] == i) {
-      ++next;
-    } else {
-      values[kept++] = values[i];
-    }
-  }
-  values.resize(kept);
-}
-
-// What a cut leaves of a surface; its own triangles come last.
-void apply(const SurfaceCut& cut, Mesh& mesh) {
-  remove_at(mesh.triangles, cut.removed);
-  mesh.triangles.insert(mesh.triangles.end(), cut.surface.begin(), cut.surface.end());
-  mesh.positions.insert(mesh.positions.end(), cut.new_positions.begin(), cut.new_positions.end());
-}
-
 // Where the ring of an opening begins among the vertices of its ball.
 struct RingPlace {
   std::uint32_t ball = 0;
@@ -163,9 +101,8 @@ constexpr std::uint32_t kOnTop = std::numeric_limits<std::uint32_t>::max();  // 
 
 class DrainedCarver {
  public:
-  DrainedCarver(std::span<const Sphere> balls, const DrainagePlan& plan, const CarveOptions& options,
-                Monitor& monitor)
-      : balls_(balls), plan_(plan), tolerance_(options.tolerance), monitor_(monitor), parts_(balls.size()) {
+  DrainedCarver(std::span<const Sphere> balls, const DrainagePlan& plan, double tolerance, Monitor& monitor)
+      : balls_(balls), plan_(plan), tolerance_(tolerance), monitor_(monitor), parts_(balls.size()) {
     for (const Channel& channel : plan.channels) thinnest_ = std::min(thinnest_, channel.tube.radius);
     for (const EscapeHole& hole : plan.holes) thinnest_ = std::min(thinnest_, hole.tube.radius);
     for (const Channel& channel : plan.channels) add_channel_openings(channel);
@@ -178,14 +115,12 @@ class DrainedCarver {
     }
   }
 
-  DrainedSolid carve(const Mesh& outer) {
+  DrainedSolid carve(OuterWithHoles outer) {
     open_balls();
-    if (const auto uncut = cut_outer(outer)) {
-      const Vec3d end = plan_.holes[*uncut].tube.end;
-      throw FailureError("the surface cannot be cut for an escape hole near (" + std::to_string(end.x) +
-                             ", " + std::to_string(end.y) + ", " + std::to_string(end.z) + ") mm",
-                         "ask for other places with --escape-hole");
-    }
+    solid_.kept_triangle_count = outer.kept_triangle_count;
+    solid_.outer_triangle_count = outer.mesh.triangles.size();
+    solid_.cut_triangles = std::move(outer.cut_triangles);
+    solid_.mesh = std::move(outer.mesh);
     for (Part& part : parts_) {
       part.first_vertex = static_cast<std::uint32_t>(solid_.mesh.positions.size());
       for (const Vec3d p : part.surface.positions) solid_.mesh.positions.push_back(to_float(p));
@@ -194,40 +129,9 @@ class DrainedCarver {
       solid_.void_ends.push_back(solid_.mesh.triangles.size());
     }
     for (std::size_t i = 0; i < plan_.channels.size(); ++i) add_channel(i);
-    for (std::size_t i = 0; i < plan_.holes.size(); ++i) add_hole(i);
+    for (std::size_t i = 0; i < plan_.holes.size(); ++i) add_hole(hole_rings_[i], outer.holes[i]);
     drop_unused_vertices();
     return std::move(solid_);
-  }
-
-  // Cuts the surface for one hole after the other, so that two may meet the same triangle. The first for
-  // which that fails.
-  std::optional<std::size_t> cut_outer(const Mesh& outer) {
-    constexpr std::uint32_t kNew = std::numeric_limits<std::uint32_t>::max();
-    Mesh mesh = outer;
-    std::vector<std::uint32_t> origins(mesh.triangles.size());
-    std::iota(origins.begin(), origins.end(), 0U);
-    for (std::size_t i = 0; i < plan_.holes.size(); ++i) {
-      monitor_.check_interrupted();
-      const EscapeHole& hole = plan_.holes[i];
-      std::size_t opening = 0;
-      for (std::uint32_t first = 0; first < hole_rings_[i].first; ++opening)
-        first += static_cast<std::uint32_t>(parts_[hole.from].openings[opening].ring.size());
-      const CuttingPrism prism = prism_of(hole.tube, parts_[hole.from].openings[opening]);
-      const auto cut = cut_surface(mesh, triangles_near(mesh, axis_of(prism), reach_of(prism)), prism);
-      if (!cut) return i;
-      for (const std::uint32_t t : cut->removed) {
-        if (origins[t] != kNew) solid_.cut_triangles.push_back(origins[t]);
-      }
-      remove_at(origins, cut->removed);
-      apply(*cut, mesh);
-      origins.resize(mesh.triangles.size(), kNew);
-      hole_sides_.push_back({cut->sides, mesh.positions.size()});
-    }
-    std::sort(solid_.cut_triangles.begin(), solid_.cut_triangles.end());
-    solid_.kept_triangle_count = outer.triangles.size() - solid_.cut_triangles.size();
-    solid_.outer_triangle_count = mesh.triangles.size();
-    solid_.mesh = std::move(mesh);
-    return std::nullopt;
   }
 
  private:
@@ -327,13 +231,11 @@ class DrainedCarver {
     solid_.channel_ends.push_back(solid_.mesh.triangles.size());
   }
 
-  void add_hole(std::size_t index) {
-    const RingPlace ring = hole_rings_[index];
-    const auto& [sides, ring_base] = hole_sides_[index];
-    for (Triangle t : sides) {
+  void add_hole(const RingPlace& ring, const OuterWithHoles::Hole& hole) {
+    for (Triangle t : hole.sides) {
       for (std::uint32_t& v : t) {
-        if (v >= ring_base)
-          v = static_cast<std::uint32_t>(v - ring_base) + parts_[ring.ball].first_vertex + ring.first;
+        if (v >= hole.ring_base)
+          v = static_cast<std::uint32_t>(v - hole.ring_base) + parts_[ring.ball].first_vertex + ring.first;
       }
       add(t);
     }
@@ -362,11 +264,6 @@ class DrainedCarver {
     RingPlace start, end;
     std::uint32_t sides;
   };
-  struct HoleSides {
-    std::vector<Triangle> triangles;
-    std::size_t ring_base;  // first index that means the ring
-  };
-
   std::span<const Sphere> balls_;
   const DrainagePlan& plan_;
   double tolerance_;
@@ -375,28 +272,21 @@ class DrainedCarver {
   std::vector<Part> parts_;
   std::vector<RingPair> channel_rings_;
   std::vector<RingPlace> hole_rings_;
-  std::vector<HoleSides> hole_sides_;
   DrainedSolid solid_;
 };
 
 }  // namespace
 
-bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const WayOut& way, const Roof& roof,
-                double tolerance) {
-  const CuttingPrism prism =
-      prism_of(way.tube, opening_of(way.tube, TubeEnd::start, way.ball, roof, sides_of(way.tube, tolerance)));
-  return may_be_cut(outer, surface.triangles_near(axis_of(prism), reach_of(prism)), prism);
-}
-
-std::optional<std::size_t> first_uncut_hole(const Mesh& outer, std::span<const Sphere> balls,
-                                            const DrainagePlan& plan, const CarveOptions& options,
-                                            Monitor& monitor) {
-  return DrainedCarver(balls, plan, options, monitor).cut_outer(outer);
+DrainedSolid carve_drained(OuterWithHoles outer, std::span<const Sphere> balls, const DrainagePlan& plan,
+                           Monitor& monitor) {
+  return DrainedCarver(balls, plan, outer.tolerance, monitor).carve(std::move(outer));
 }
 
 DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,
                            const CarveOptions& options, Monitor& monitor) {
-  return DrainedCarver(balls, plan, options, monitor).carve(outer);
+  auto cut = cut_holes(outer, balls, plan, options, monitor);
+  if (const auto* uncut = std::get_if<UncutHole>(&cut)) throw cannot_be_cut(plan.holes[uncut->index]);
+  return carve_drained(std::move(std::get<OuterWithHoles>(cut)), balls, plan, monitor);
 }
 
 }  // namespace aerate

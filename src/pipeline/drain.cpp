@@ -7,12 +7,14 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/error.h"
 #include "pipeline/check_drained.h"
 #include "pipeline/outward_shells.h"
 #include "printing/carve_drained.h"
+#include "printing/cut_holes.h"
 
 namespace aerate {
 namespace {
@@ -21,7 +23,7 @@ namespace {
 constexpr double kLooser = 1.25;
 constexpr int kMostTries = 12;
 
-// Places at which the surface turns out not to be cut before it is left to the carver to say so.
+// Places at which the surface turns out not to be cut, before that is an error.
 constexpr std::size_t kMostRefused = 100;
 
 // Above this share of the voids' volume pools are worth a notice.
@@ -53,8 +55,8 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
 
 }  // namespace
 
-DrainageFacts drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
-                            const DrainageRequest& request, double tolerance, Monitor& monitor) {
+PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
+                           const DrainageRequest& request, double tolerance, Monitor& monitor) {
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
@@ -73,16 +75,18 @@ DrainageFacts drain_packing(const PreparedModel& model, const SurfaceIndex& surf
         plan_drainage({surface, outward.winding()}, packing, request, can_open, monitor);
     std::vector<Sphere> kept;
     for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
-    const auto uncut = first_uncut_hole(model.mesh, kept, planned.plan, {.tolerance = tolerance}, monitor);
-    if (uncut && refused.size() < kMostRefused) {
-      refused.push_back(planned.plan.holes[*uncut].tube);
+    auto cut = cut_holes(model.mesh, kept, planned.plan, {.tolerance = tolerance}, monitor);
+    if (const auto* uncut = std::get_if<UncutHole>(&cut)) {
+      const EscapeHole& hole = planned.plan.holes[uncut->index];
+      if (refused.size() == kMostRefused) throw cannot_be_cut(hole);
+      refused.push_back(hole.tube);
       continue;
     }
     const std::size_t packed = packing.spheres.size();
     packing.spheres = std::move(kept);
     DrainageFacts drainage{.request = request, .plan = std::move(planned.plan), .dropped = planned.dropped};
     tell_what_was_dropped(drainage, packed, monitor);
-    return drainage;
+    return {std::move(drainage), std::move(std::get<OuterWithHoles>(cut))};
   }
 }
 
@@ -105,10 +109,14 @@ void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const Dra
   tell(request.hole_radius, "escape holes", "--hole-diameter");
 }
 
-DrainedSolid carve_within(const PreparedModel& model, const Packing& packing, const DrainagePlan& plan,
-                          double& tolerance, std::optional<std::size_t> max_triangles, Monitor& monitor) {
+DrainedSolid carve_within(const PreparedModel& model, OuterWithHoles outer, const Packing& packing,
+                          const DrainagePlan& plan, double& tolerance,
+                          std::optional<std::size_t> max_triangles, Monitor& monitor) {
   for (int i = 0; i < kMostTries; ++i) {
-    DrainedSolid solid = carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
+    DrainedSolid solid =
+        outer.tolerance == tolerance
+            ? carve_drained(std::move(outer), packing.spheres, plan, monitor)
+            : carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
     if (!max_triangles || solid.mesh.triangles.size() <= *max_triangles) return solid;
     tolerance *= kLooser;
   }

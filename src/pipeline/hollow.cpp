@@ -128,10 +128,14 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   auto [packing, surface] = pack_model(model, request, monitor);
   report.packing_statistics = packing.statistics;
   report.packing_device = packing.device;
+  std::optional<OuterWithHoles> with_holes;
   if (options.drainage) {
     monitor.stage("drain");
     warn_of_wide_tubes(request.process, request.limits.roof, *options.drainage, monitor);
-    report.drainage = drain_packing(model, surface, packing, *options.drainage, options.tolerance, monitor);
+    auto [drainage, outer] =
+        drain_packing(model, surface, packing, *options.drainage, options.tolerance, monitor);
+    report.drainage = std::move(drainage);
+    with_holes = std::move(outer);
   }
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
@@ -145,9 +149,9 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
 
   monitor.stage("carve");
   std::optional<DrainedSolid> drained;
-  if (report.drainage)
-    drained = carve_within(model, packing, report.drainage->plan, report.tolerance_used,
-                           options.max_triangles, monitor);
+  if (with_holes)
+    drained = carve_within(model, std::move(*with_holes), packing, report.drainage->plan,
+                           report.tolerance_used, options.max_triangles, monitor);
   Solid solid =
       drained ? as_solid(*drained) : carve(model, plan, {.tolerance = report.tolerance_used}, monitor);
   monitor.check_interrupted();
