@@ -28,8 +28,8 @@ Solid carve_keeping_surface(Mesh outer, const VoidPlan& plan, const CarveOptions
 }
 
 double most_void_triangles(const VoidPlan& plan, const CarveOptions& options) {
-  // Of a ball up to 1.8 times 4.84 radii over the tolerance, and 108 at least (docs/benchmarks.md); the circle of
-  // a roof with its cone and top takes more where that is small.
+  // Of a ball up to 1.8 times 4.84 radii over the tolerance, and 108 at least (docs/benchmarks.md); the
+  // circle of a roof with its cone and top takes more where that is small.
   constexpr double kLeast = 400, kPerRadius = 20;
   double count = 0;
   for (const Sphere& sphere : plan.spheres) count += kLeast + kPerRadius * sphere.radius / options.tolerance;

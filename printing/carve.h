@@ -24,7 +24,8 @@ struct CarveOptions {
 // took more than about a million triangles; InterruptedError.
 Solid carve_keeping_surface(Mesh outer, const VoidPlan& plan, const CarveOptions& options, Monitor& monitor);
 
-// A bound of the number of triangles that `carve_keeping_surface` will make for the voids alone, by a formula.
+// A bound of the number of triangles that `carve_keeping_surface` will make for the voids alone, by a
+// formula.
 double most_void_triangles(const VoidPlan& plan, const CarveOptions& options);
 
 // That number. Takes nearly all of the time that making them takes. Throws as `carve_keeping_surface` does.

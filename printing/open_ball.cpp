@@ -37,8 +37,7 @@ class BallOpener {
 
   bool take_out_what_is_near_rims() {
     std::vector<double> margins;
-    for (const Opening& opening : openings_)
-      margins.push_back(kFreeShareOfEdge * longest_edge(opening.ring));
+    for (const Opening& opening : openings_) margins.push_back(kFreeShareOfEdge * longest_edge(opening.ring));
     const auto count = static_cast<std::uint32_t>(triangulation_.positions().size());
     for (std::uint32_t v = 0; v < count; ++v) {
       const Vec3d point = on_ball(triangulation_.positions()[v]);

@@ -28,9 +28,9 @@ struct OpenedBall {
 // The convex hull of the rings' points and of the points that `whole`, a connected triangulation of the unit
 // sphere that is its own hull, has on the ball, but for those near a ring; less what is inside the rings. All
 // points lie on one sphere, so an edge of a ring is an edge of the hull as soon as no other point lies in the
-// ball that has it for a diameter: points that do are left out. The hull changes near the rings alone, so it is
-// found by taking those points out of `whole`, putting the rings in, and flipping edges.
-// nullopt if the openings are too near to each other for that, or leave too few points.
+// ball that has it for a diameter: points that do are left out. The hull changes near the rings alone, so it
+// is found by taking those points out of `whole`, putting the rings in, and flipping edges. nullopt if the
+// openings are too near to each other for that, or leave too few points.
 std::optional<OpenedBall> open_ball(const Sphere& ball, const StarTriangulation& whole,
                                     std::span<const Opening> openings);
 

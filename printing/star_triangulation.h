@@ -13,9 +13,9 @@
 
 namespace aerate {
 
-// A closed triangulation all of whose triangles face away from the origin, that can be changed edge by edge and
-// vertex by vertex. Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t, which is on its left;
-// twins run between the same vertices.
+// A closed triangulation all of whose triangles face away from the origin, that can be changed edge by edge
+// and vertex by vertex. Half-edge 3 t + k runs from corner k to corner k + 1 of triangle t, which is on its
+// left; twins run between the same vertices.
 class StarTriangulation {
  public:
   StarTriangulation(std::vector<Vec3d> positions, std::vector<Triangle> triangles)
@@ -63,8 +63,8 @@ class StarTriangulation {
     }
   }
 
-  // Splits the triangle that the ray from the centre through `position` meets into three at a new vertex there,
-  // and returns its number; nullopt if the ray meets an edge. The search begins at the vertex `near`.
+  // Splits the triangle that the ray from the centre through `position` meets into three at a new vertex
+  // there, and returns its number; nullopt if the ray meets an edge. The search begins at the vertex `near`.
   std::optional<std::uint32_t> insert(Vec3d position, std::uint32_t near = 0) {
     if (const auto t = walk_towards(position, out_[near] / 3)) return split(*t, position);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
@@ -73,8 +73,8 @@ class StarTriangulation {
     return std::nullopt;
   }
 
-  // Takes a vertex out of all triangles, of which there are then two less; its position stays in the list. False
-  // if the triangulation would not be left star-shaped.
+  // Takes a vertex out of all triangles, of which there are then two less; its position stays in the list.
+  // False if the triangulation would not be left star-shaped.
   bool remove(std::uint32_t vertex) {
     while (true) {
       std::size_t degree = 0;
@@ -155,7 +155,8 @@ class StarTriangulation {
     return volume(a, b, position) > 0 && volume(b, c, position) > 0 && volume(c, a, position) > 0;
   }
 
-  // From triangle to triangle to the one that the ray meets; nullopt if that takes too long or it meets an edge.
+  // From triangle to triangle to the one that the ray meets; nullopt if that takes too long or it meets an
+  // edge.
   std::optional<std::uint32_t> walk_towards(Vec3d position, std::uint32_t t) const {
     for (std::size_t step = 0; step < triangles_.size(); ++step) {
       const auto side = crossed_side(t, position);

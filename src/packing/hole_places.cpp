@@ -74,11 +74,7 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
 HolePlaces::HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres,
                        const PackingLimits& limits, const DrainageRequest& request,
                        const TubeClearance& clearance)
-    : spheres_(spheres),
-      limits_(limits),
-      request_(request),
-      clearance_(clearance),
-      outward_(outward) {}
+    : spheres_(spheres), limits_(limits), request_(request), clearance_(clearance), outward_(outward) {}
 
 // Ends the tube where its axis meets the surface.
 bool HolePlaces::reach_surface(EscapeHole& hole) const {

@@ -22,8 +22,8 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
 class HolePlaces {
  public:
   // `outward`: see DrainableModel.
-  HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres, const PackingLimits& limits,
-             const DrainageRequest& request, const TubeClearance& clearance);
+  HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres,
+             const PackingLimits& limits, const DrainageRequest& request, const TubeClearance& clearance);
 
   // Tubes that lead out of some of the balls, the best first. `down` is the way liquid runs: the direction of
   // gravity as printed for the low hole, the opposite for the high one. A place is the better, the lower it

@@ -71,8 +71,8 @@ double tube_spacing(double radius, double other_radius) {
   return radius + other_radius + kOpeningSpacingShare * std::max(radius, other_radius);
 }
 
-TubeClearance::TubeClearance(const SurfaceIndex& surface, std::span<const Sphere> spheres, const PackingLimits& limits,
-                             double longest, double widest_radius)
+TubeClearance::TubeClearance(const SurfaceIndex& surface, std::span<const Sphere> spheres,
+                             const PackingLimits& limits, double longest, double widest_radius)
     : bvh_(surface.bvh()),
       spheres_(spheres),
       limits_(limits),

@@ -136,12 +136,14 @@ std::optional<PackingFault> find_fault(const SurfaceIndex& surface, const Packin
   return first;
 }
 
-Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Sphere> spheres, const Roof& roof) {
+Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Sphere> spheres,
+                              const Roof& roof) {
   Clearances clearances{kInfinity, std::nullopt};
   if (spheres.empty()) return clearances;
   double smallest_radius = kInfinity;
   for (const Sphere& sphere : spheres) smallest_radius = std::min(smallest_radius, sphere.radius);
-  for (const double wall : walls_of(surface, spheres, roof)) clearances.wall = std::min(clearances.wall, wall);
+  for (const double wall : walls_of(surface, spheres, roof))
+    clearances.wall = std::min(clearances.wall, wall);
   if (spheres.size() < 2) return clearances;
   // Widen the search until a pair is in it.
   for (double reach = std::max(smallest_radius, 1e-3);; reach *= 2) {

@@ -42,7 +42,8 @@ struct Clearances {
   double wall = 0;
   std::optional<double> gap;
 };
-Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Sphere> spheres, const Roof& roof = {});
+Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Sphere> spheres,
+                              const Roof& roof = {});
 
 // The largest ball inside the model where its winding number is 1, touching the surface (no wall); radius 0
 // if there is none. For the message when nothing fits under the limits: accurate to about 1 %.

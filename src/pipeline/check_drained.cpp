@@ -104,8 +104,7 @@ void require_remains_on_surface(const Mesh& read_back, const ExpectedDrained& ex
     for (const std::uint32_t v : read_back.triangles[i]) corners.push_back(to_double(read_back.positions[v]));
   }
   double farthest = 0;
-  for (const double distance : expected.surface.distances(corners))
-    farthest = std::max(farthest, distance);
+  for (const double distance : expected.surface.distances(corners)) farthest = std::max(farthest, distance);
   if (farthest > rounding_of(expected.model))
     fail_check("the outer surface beside a hole is {:.3g} mm from the model's", farthest);
 }
@@ -174,7 +173,8 @@ std::size_t count_sealed(const Mesh& read_back, const EdgeUses& uses, const Expe
 void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
   for (std::size_t i = 0; i < plan.holes.size(); ++i) {
     const Tube& tube = plan.holes[i].tube;
-    const Mesh part = part_of(read_back, triangles_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
+    const Mesh part =
+        part_of(read_back, triangles_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
     const SelfIntersections found = find_self_intersections(part);
     if (found.pair_count == 0) continue;
     const Vec3d place = found.places.front();
@@ -191,8 +191,7 @@ double channel_wall(const SurfaceIndex& surface, const DrainagePlan& plan) {
     const Vec3d along = channel.tube.end - channel.tube.start;
     const auto steps = static_cast<std::size_t>(std::ceil(length(along) / kSpacing)) + 1;
     for (std::size_t i = 0; i <= steps; ++i) {
-      const Vec3d point =
-          channel.tube.start + along * (static_cast<double>(i) / static_cast<double>(steps));
+      const Vec3d point = channel.tube.start + along * (static_cast<double>(i) / static_cast<double>(steps));
       // Only what is nearer than the least so far is of interest.
       const double limit = least + channel.tube.radius;
       const double nearest = surface.bvh().nearest(point, limit * limit).distance_squared;

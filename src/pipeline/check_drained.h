@@ -26,8 +26,8 @@ struct ExpectedDrained {
   double tolerance = 0;  // mm
 };
 
-// Whether the model, given with its index, runs through itself near a tube's outer end. A hole there could not
-// be told from such a flaw.
+// Whether the model, given with its index, runs through itself near a tube's outer end. A hole there could
+// not be told from such a flaw.
 bool is_crossed_near(const Mesh& model, const SurfaceIndex& surface, const Tube& tube);
 
 // Checks and measures a mesh that was read back from disk, its vertices welded:

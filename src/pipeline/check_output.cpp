@@ -173,7 +173,8 @@ OutputFacts check_output(const Mesh& read_back, const ExpectedOutput& expected, 
       std::count_if(expected.plan.spheres.begin(), expected.plan.spheres.end(),
                     [&](const Sphere& planned) { return expected.plan.roof.shapes(planned.radius); }));
   facts.ceilings = measure_limited_ceilings(read_back, expected, monitor);
-  facts.clearances = measure_limits(remeshed_surface ? *remeshed_surface : expected.surface, voids.balls, expected);
+  facts.clearances =
+      measure_limits(remeshed_surface ? *remeshed_surface : expected.surface, voids.balls, expected);
   monitor.check_interrupted();
 
   const VolumeMoments outer_moments = volume_moments(outer);
