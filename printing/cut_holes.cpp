@@ -65,10 +65,11 @@ FailureError cannot_be_cut(const EscapeHole& hole) {
                       "ask for other places with --escape-hole");
 }
 
-std::variant<OuterWithHoles, UncutHole> cut_holes(const Mesh& outer, std::span<const Sphere> balls,
-                                                  const DrainagePlan& plan, const CarveOptions& options,
-                                                  Monitor& monitor) {
+std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, std::span<const Sphere> balls,
+                                                   const DrainagePlan& plan, const CarveOptions& options,
+                                                   Monitor& monitor) {
   constexpr std::uint32_t kNew = std::numeric_limits<std::uint32_t>::max();
+  UncutHoles uncut;
   OuterWithHoles result;
   result.tolerance = options.tolerance;
   Mesh& mesh = result.mesh = outer;
@@ -79,7 +80,10 @@ std::variant<OuterWithHoles, UncutHole> cut_holes(const Mesh& outer, std::span<c
     const EscapeHole& hole = plan.holes[i];
     const CuttingPrism prism = prism_of({hole.tube, balls[hole.from]}, plan.roof, options.tolerance);
     auto cut = cut_surface(mesh, triangles_near(mesh, axis_of(prism), reach_of(prism)), prism);
-    if (!cut) return UncutHole{i};
+    if (!cut) {
+      uncut.indices.push_back(i);
+      continue;
+    }
     for (const std::uint32_t t : cut->removed) {
       if (origins[t] != kNew) result.cut_triangles.push_back(origins[t]);
     }
@@ -88,6 +92,7 @@ std::variant<OuterWithHoles, UncutHole> cut_holes(const Mesh& outer, std::span<c
     origins.resize(mesh.triangles.size(), kNew);
     result.holes.push_back({std::move(cut->sides), mesh.positions.size()});
   }
+  if (!uncut.indices.empty()) return uncut;
   std::sort(result.cut_triangles.begin(), result.cut_triangles.end());
   result.kept_triangle_count = outer.triangles.size() - result.cut_triangles.size();
   return result;

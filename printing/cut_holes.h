@@ -40,16 +40,16 @@ struct OuterWithHoles {
   double tolerance = 0;                      // of the sides, mm
 };
 
-// The hole for which a surface cannot be cut, after it was cut for those before it.
-struct UncutHole {
-  std::size_t index;
+// The holes, by index, for which a surface cannot be cut after it was cut for those before them.
+struct UncutHoles {
+  std::vector<std::size_t> indices;
 };
 FailureError cannot_be_cut(const EscapeHole& hole);
 
 // Cuts a surface around the escape holes of a plan alone (cut_surface.h), for one after the other, so that
 // two may meet the same triangle. Throws InterruptedError.
-std::variant<OuterWithHoles, UncutHole> cut_holes(const Mesh& outer, std::span<const Sphere> balls,
-                                                  const DrainagePlan& plan, const CarveOptions& options,
-                                                  Monitor& monitor);
+std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, std::span<const Sphere> balls,
+                                                   const DrainagePlan& plan, const CarveOptions& options,
+                                                   Monitor& monitor);
 
 }  // namespace aerate

@@ -40,8 +40,11 @@ double facing_area(Vec3d axis, Vec3f a, Vec3f b, Vec3f c) {
   return dot(axis, cross(to_double(b) - to_double(a), to_double(c) - to_double(a)));
 }
 
-bool has_area(Vec3f a, Vec3f b, Vec3f c) {
-  return length_squared(cross(to_double(b) - to_double(a), to_double(c) - to_double(a))) > 0;
+// Does a triangle face away from the prism's axis?
+bool faces_outward(const CuttingPrism& prism, Vec3f a, Vec3f b, Vec3f c) {
+  const Vec3d from_start = (to_double(a) + to_double(b) + to_double(c)) * (1.0 / 3) - prism.start;
+  const Vec3d outward = from_start - prism.axis * dot(from_start, prism.axis);
+  return dot(cross(to_double(b) - to_double(a), to_double(c) - to_double(a)), outward) > 0;
 }
 
 // The triangles as a mesh of its own, with the vertices that they have in the whole one.
@@ -238,7 +241,7 @@ class Cut {
         if (found == index_of_.end()) return false;
         t[i] = found->second;
       }
-      if (!has_area(position(t[0]), position(t[1]), position(t[2]))) return false;
+      if (!faces_outward(prism_, position(t[0]), position(t[1]), position(t[2]))) return false;
       cut_.sides.push_back(first_lowest({t[0], t[2], t[1]}));
     }
     std::sort(cut_.sides.begin(), cut_.sides.end());

@@ -38,8 +38,9 @@ bool may_be_cut(const Mesh& mesh, std::span<const std::uint32_t> near, const Cut
 // Cuts a surface by a prism: CGAL's corefinement of the triangles that it may meet, `near`, ascending. Every
 // other triangle stays as it is; it does not matter what flaws there are elsewhere. nullopt if the prism does
 // not leave the solid through one piece of 2-manifold surface that faces its end all over, or if the new
-// triangles would not be sound when they are rounded to fp32: projected along the axis, each has to have a
-// positive area, so that they cover what they replace exactly once.
+// triangles would not be sound when they are rounded to fp32: projected along the axis, each of the surface
+// has to have a positive area, so that they cover what they replace exactly once, and each of the sides has
+// to face the axis.
 std::optional<SurfaceCut> cut_surface(const Mesh& mesh, std::span<const std::uint32_t> near,
                                       const CuttingPrism& prism);
 

@@ -76,10 +76,9 @@ PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surfa
     std::vector<Sphere> kept;
     for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
     auto cut = cut_holes(model.mesh, kept, planned.plan, {.tolerance = tolerance}, monitor);
-    if (const auto* uncut = std::get_if<UncutHole>(&cut)) {
-      const EscapeHole& hole = planned.plan.holes[uncut->index];
-      if (refused.size() == kMostRefused) throw cannot_be_cut(hole);
-      refused.push_back(hole.tube);
+    if (const auto* uncut = std::get_if<UncutHoles>(&cut)) {
+      if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[uncut->indices.front()]);
+      for (const std::size_t i : uncut->indices) refused.push_back(planned.plan.holes[i].tube);
       continue;
     }
     const std::size_t packed = packing.spheres.size();

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -60,6 +61,27 @@ void expect_drained(const Job& job, const Json& report, std::size_t shells_of_mo
   EXPECT_EQ(input["non_manifold_edges"], report["input"]["non_manifold_edges"]);
   EXPECT_NEAR(input["signed_volume_mm3"].get<double>(), report["volume"]["after_mm3"].get<double>(),
               1e-6 * report["volume"]["before_mm3"].get<double>());
+}
+
+// Fifty metres from the origin fp32 holds four thousandths of a millimetre: where that turns the small
+// triangles of a hole's rim over, the hole is made elsewhere.
+TEST(DrainageOptions, AModelFarFromTheOriginIsOpenedWhereRoundingAllowsIt) {
+  const Job job;
+  std::string bunny = read_bytes(sample("bunny.stl"));
+  constexpr std::size_t kHeader = 84, kFacet = 50, kNormal = 12, kAttribute = 2;
+  for (std::size_t facet = kHeader; facet < bunny.size(); facet += kFacet) {
+    for (std::size_t i = facet + kNormal; i < facet + kFacet - kAttribute; i += sizeof(float)) {
+      float coordinate = 0;
+      std::memcpy(&coordinate, &bunny[i], sizeof coordinate);
+      coordinate += 5e4F;
+      std::memcpy(&bunny[i], &coordinate, sizeof coordinate);
+    }
+  }
+  const Json report = json_of(job.hollow(job.input("far.stl", bunny), {"--process", "metal"}));
+  ASSERT_FALSE(report.is_null());
+  EXPECT_EQ(report.at("drainage")["sealed_cavities"], 0);
+  EXPECT_GE(report.at("drainage")["holes"].size(), 2U);
+  EXPECT_GE(report["voids"]["count"].get<int>(), 30);
 }
 
 TEST(DrainageOptions, ProcessesThatTrapMaterialDrainByThemselves) {
