@@ -11,11 +11,10 @@
 #include <set>
 #include <string>
 #include <tuple>
-#include <unordered_map>
 
 #include "core/disjoint_sets.h"
 #include "core/error.h"
-#include "core/top_opening.h"
+#include "packing/channel_ways.h"
 #include "packing/hole_places.h"
 #include "packing/pools.h"
 #include "packing/tube_clearance.h"
@@ -44,22 +43,6 @@ constexpr double kPoolsAimedAt = 0.01;
 constexpr int kMostMoreHoles = 6;
 constexpr double kPoolWorthHole = 0.003;
 
-// Where the axis of a channel passes the balls that it joins: so many radii above the centre of the lower
-// one, and below that of the upper. Steep channels between the top of one and the bottom of the other leave
-// no pools; those through the centres find a way most often.
-struct Attachment {
-  double lower, upper;
-};
-constexpr std::array<Attachment, 7> kAttachments{
-    {{0.7, -0.7}, {0.35, -0.35}, {0, 0}, {0, -0.7}, {0.7, 0}, {-0.35, -0.7}, {-0.7, -0.7}}};
-
-// After those: straight up out of the top of a roof.
-constexpr std::size_t kOutOfTop = kAttachments.size();
-constexpr std::size_t kWays = kAttachments.size() + 1;
-
-// Channels that leave below a roof are moved so many times at most, since that turns them.
-constexpr int kMostShifts = 4;
-
 // More channels than the tree's have to reduce what stays to this share of it.
 constexpr double kLeastGain = 0.7;
 
@@ -86,6 +69,7 @@ class Planner {
         clearance_(model.surface, spheres_, packing.limits,
                    std::max(longest_, longest_hole(request, packing.limits)),
                    std::max(request.channel_radius, request.hole_radius)),
+        ways_(spheres_, roof_, request.channel_radius, longest_, clearance_),
         places_(model.outward, spheres_, packing.limits, request, clearance_) {
     plan_.roof = roof_;
   }
@@ -99,22 +83,18 @@ class Planner {
     double height;  // that liquid has to reach
     double length;
     std::uint32_t to, from;
-    std::size_t attachment;
+    std::size_t way;
     friend bool operator>(const Candidate& a, const Candidate& b) {
-      return std::tie(a.height, a.length, a.to, a.from, a.attachment) >
-             std::tie(b.height, b.length, b.to, b.from, b.attachment);
+      return std::tie(a.height, a.length, a.to, a.from, a.way) >
+             std::tie(b.height, b.length, b.to, b.from, b.way);
     }
   };
   using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
   using UncutPlace = std::tuple<std::uint32_t, double, double, double>;
-  static constexpr std::size_t kExisting = kWays;
+  static constexpr std::size_t kExisting = ChannelWays::kCount;
 
   double largest_radius() const;
   double volume_of(const Members& members) const;
-  Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const;
-  std::optional<Channel> channel_out_of_top(std::uint32_t lower, std::uint32_t upper) const;
-  std::optional<Channel> channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const;
-  bool is_free(const Channel& channel, std::size_t attachment);
   std::vector<Members> networks();
   std::vector<Members> asked_for(std::vector<Members> networks);
   bool has_low_hole(const Members& members, std::uint32_t network) const;
@@ -143,13 +123,13 @@ class Planner {
   Monitor& monitor_;
   double longest_;
   TubeClearance clearance_;
+  ChannelWays ways_;
   HolePlaces places_;
   DrainagePlan plan_;
   UndrainedVoids dropped_;
   std::vector<std::uint32_t> network_of_;
   std::vector<std::vector<std::uint32_t>> channels_of_;
-  std::unordered_map<std::uint64_t, bool> free_;  // by pair and attachment
-  std::set<UncutPlace> uncut_;                    // where the surface is known not to be cut well
+  std::set<UncutPlace> uncut_;  // where the surface is known not to be cut well
 };
 
 double Planner::largest_radius() const {
@@ -162,69 +142,6 @@ double Planner::volume_of(const Members& members) const {
   double volume = 0;
   for (const std::uint32_t i : members) volume += void_volume(roof_, spheres_[i].radius);
   return volume;
-}
-
-// Where a channel from a ball with a roof to a higher place has to start so that it leaves the ball below the
-// roof: `inside`, or so much beside it, across the channel and downwards.
-Vec3d Planner::below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const {
-  if (!roof_.shapes(ball.radius)) return inside;
-  for (int i = 0; i < kMostShifts; ++i) {
-    const Vec3d along = to - inside;
-    const auto way = way_below_roof(ball, roof_, along * (1 / length(along)), request_.channel_radius);
-    if (!way) return inside;
-    const double excess = dot(inside - ball.centre, way->across) - way->highest;
-    if (excess <= 0) return inside;
-    inside = inside - way->across * excess;
-  }
-  return inside;
-}
-
-std::optional<Channel> Planner::channel_out_of_top(std::uint32_t lower, std::uint32_t upper) const {
-  const Sphere& ball = spheres_[lower];
-  const double radius = request_.channel_radius;
-  if (!has_top_for(radius, ball, roof_)) return std::nullopt;
-  const Vec3d start = ball.centre + roof_.up * top_opening_height(radius, ball.radius, roof_);
-  const auto tube = tube_into(spheres_[upper], start, roof_.up, radius);
-  if (!tube || length(tube->end - tube->start) > longest_ ||
-      !opens_below_roof(*tube, TubeEnd::end, spheres_[upper], roof_)) {
-    return std::nullopt;
-  }
-  return Channel{lower, upper, *tube};
-}
-
-std::optional<Channel> Planner::channel(std::uint32_t a, std::uint32_t b, std::size_t attachment) const {
-  const Vec3d up = roof_.up;
-  const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
-  if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
-  const Sphere& lower = spheres_[a];
-  const Sphere& upper = spheres_[b];
-  if (attachment == kOutOfTop) return channel_out_of_top(a, b);
-  const Attachment where = kAttachments[attachment];
-  Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
-  const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
-  // Off the centres only where that leaves a channel which rises from the lower to the upper.
-  if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) <= 0)
-    return std::nullopt;
-  inside_lower = below_roof(lower, inside_lower, inside_upper);
-  const auto tube = tube_between(lower, upper, inside_lower, inside_upper, request_.channel_radius);
-  if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
-      !opens_below_roof(*tube, TubeEnd::start, lower, roof_) ||
-      !opens_below_roof(*tube, TubeEnd::end, upper, roof_)) {
-    return std::nullopt;
-  }
-  return Channel{a, b, *tube};
-}
-
-// Whether the channel keeps clear of everything but other channels; remembered.
-bool Planner::is_free(const Channel& channel, std::size_t attachment) {
-  const std::uint64_t key =
-      (static_cast<std::uint64_t>(channel.from) * spheres_.size() + channel.to) * kWays + attachment;
-  const auto known = free_.find(key);
-  if (known != free_.end()) return known->second;
-  const bool is_free = clearance_.keeps_gap_to_voids(channel.tube, channel.from, channel.to) &&
-                       clearance_.keeps_wall(channel.tube);
-  free_.emplace(key, is_free);
-  return is_free;
 }
 
 // Sets of voids that channels can join, by falling volume; voids that are too narrow are counted.
@@ -257,9 +174,9 @@ std::vector<Planner::Members> Planner::networks() {
   for (const Pair& pair : pairs) {
     if (sets.root(pair.a) == sets.root(pair.b)) continue;
     monitor_.check_interrupted();
-    for (std::size_t i = 0; i < kWays; ++i) {
-      const auto found = channel(pair.a, pair.b, i);
-      if (found && is_free(*found, i)) {
+    for (std::size_t i = 0; i < ChannelWays::kCount; ++i) {
+      const auto found = ways_.channel(pair.a, pair.b, i);
+      if (found && ways_.is_free(*found, i)) {
         sets.join(pair.a, pair.b);
         break;
       }
@@ -456,8 +373,8 @@ void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d u
   }
   for (const std::uint32_t to : clearance_.neighbours(from)) {
     if (network_of_[to] != network_of_[from]) continue;
-    for (std::size_t i = 0; i < kWays; ++i) {
-      const auto c = channel(from, to, i);
+    for (std::size_t i = 0; i < ChannelWays::kCount; ++i) {
+      const auto c = ways_.channel(from, to, i);
       if (!c) continue;
       const double sill = sill_of(c->tube, spheres_[c->from], spheres_[c->to], up);
       queue.push({std::max(height, sill), length(c->tube.end - c->tube.start), to, from, i});
@@ -482,9 +399,9 @@ std::vector<Planner::Candidate> Planner::flood(Vec3d up, const std::function<voi
     const Candidate next = queue.top();
     queue.pop();
     if (ways[next.to].to != kOutside) continue;
-    if (next.attachment != kExisting) {
-      const auto found = channel(next.from, next.to, next.attachment);
-      if (!is_free(*found, next.attachment) ||
+    if (next.way != kExisting) {
+      const auto found = ways_.channel(next.from, next.to, next.way);
+      if (!ways_.is_free(*found, next.way) ||
           !clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) {
         continue;
       }
@@ -564,8 +481,8 @@ void Planner::empty_pools() {
       is_on_way[at] = true;
   }
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
-    if (!is_on_way[i] || ways[i].attachment == kExisting) continue;
-    const auto found = channel(ways[i].from, i, ways[i].attachment);
+    if (!is_on_way[i] || ways[i].way == kExisting) continue;
+    const auto found = ways_.channel(ways[i].from, i, ways[i].way);
     if (clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) place(*found);
   }
   // Not worth it: back to the tree.
