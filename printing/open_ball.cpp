@@ -19,15 +19,20 @@ double longest_edge(std::span<const Vec3d> ring) {
   return longest;
 }
 
-// Does the point of the sphere lie within `margin` of an opening's rim?
-bool is_near_rim(Vec3d point, const Sphere& ball, const Opening& opening, double margin) {
+// Is the point within `margin` of the middle of an edge of an opening's rim?
+bool is_near_rim(Vec3d point, const Opening& opening, double margin) {
   const Vec3d along = opening.tube.end - opening.tube.start;
   const Vec3d axis = along * (1 / length(along));
-  const double side = dot(point - ball.centre, axis);
-  if ((opening.end == TubeEnd::start) != (side > 0)) return false;
   const Vec3d from_start = point - opening.tube.start;
   const double from_axis = length(from_start - axis * dot(from_start, axis));
-  return std::abs(from_axis - opening.tube.radius) < margin;
+  // The rim is on the tube: most points are told apart by that.
+  if (std::abs(from_axis - opening.tube.radius) >= 2 * margin) return false;
+  const std::vector<Vec3d>& ring = opening.ring;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Vec3d middle = (ring[i] + ring[(i + 1) % ring.size()]) * 0.5;
+    if (length_squared(point - middle) < margin * margin) return true;
+  }
+  return false;
 }
 
 class BallOpener {
@@ -43,7 +48,7 @@ class BallOpener {
       const Vec3d point = on_ball(triangulation_.positions()[v]);
       bool is_near = false;
       for (std::size_t i = 0; i < openings_.size() && !is_near; ++i)
-        is_near = is_near_rim(point, ball_, openings_[i], margins[i]);
+        is_near = is_near_rim(point, openings_[i], margins[i]);
       if (!is_near) {
         kept_.push_back(v);
       } else if (!triangulation_.remove(v)) {

@@ -21,6 +21,9 @@ constexpr std::array<Attachment, 7> kAttachments{
 constexpr std::size_t kOutOfTop = kAttachments.size();
 static_assert(ChannelWays::kCount == kAttachments.size() + 1);
 
+// A channel that falls by less is level, mm.
+constexpr double kLevel = 1e-6;
+
 // Channels that leave below a roof are moved so many times at most, since that turns them.
 constexpr int kMostShifts = 4;
 
@@ -67,8 +70,8 @@ std::optional<Channel> ChannelWays::channel(std::uint32_t a, std::uint32_t b, st
   const Attachment where = kAttachments[way];
   Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
   const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
-  // Off the centres only where that leaves a channel which rises from the lower to the upper.
-  if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) <= 0)
+  // Off the centres only where that leaves a channel which does not fall from the lower to the upper.
+  if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) < -kLevel)
     return std::nullopt;
   inside_lower = below_roof(lower, inside_lower, inside_upper);
   const auto tube = tube_between(lower, upper, inside_lower, inside_upper, radius_);

@@ -98,8 +98,10 @@ class Planner {
   std::vector<Members> networks();
   std::vector<Members> asked_for(std::vector<Members> networks);
   bool has_low_hole(const Members& members, std::uint32_t network) const;
+  bool leaves_room_for_channel(const EscapeHole& hole);
   std::ptrdiff_t holes_of(std::uint32_t network) const;
   void leave_out(std::uint32_t network);
+  void drop_tubes_of_left_out();
   bool open_network(const Members& members, std::uint32_t network);
   void open_and_join(std::span<const Members> networks, double whole_volume);
   bool open_one(std::vector<EscapeHole> ranked, std::uint32_t network);
@@ -114,6 +116,7 @@ class Planner {
   TrappedPools pools_now() const { return compacted().plan.pools; }
   void leave_out_pools();
   void leave_out_branch(std::uint32_t root, const SpillHeights& spills);
+  bool regroup();
   PlannedDrainage compacted() const;
 
   std::span<const Sphere> spheres_;
@@ -128,6 +131,7 @@ class Planner {
   DrainagePlan plan_;
   UndrainedVoids dropped_;
   std::vector<std::uint32_t> network_of_;
+  std::vector<std::uint32_t> asked_for_;  // voids with holes that were asked for
   std::vector<std::vector<std::uint32_t>> channels_of_;
   std::set<UncutPlace> uncut_;  // where the surface is known not to be cut well
 };
@@ -205,19 +209,24 @@ std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) 
   std::sort(all.begin(), all.end());
   std::vector<bool> is_reached(networks.size(), false);
   for (const Vec3d place : request_.escape_holes) {
-    if (!open_one(places_.leading_to(place, all), 0)) {
+    // Rather into a void beside which the hole leaves room for a channel.
+    const std::vector<EscapeHole> found = places_.leading_to(place, all);
+    std::vector<EscapeHole> roomy = found;
+    std::erase_if(roomy, [this](const EscapeHole& hole) { return !leaves_room_for_channel(hole); });
+    if (!open_one(std::move(roomy), 0) && !open_one(found, 0)) {
       throw UsageError("no straight hole leads from (" + std::to_string(place.x) + ", " +
                            std::to_string(place.y) + ", " + std::to_string(place.z) +
                            ") mm to a void that channels join to others",
                        "ask for a place nearer to a large void, give a smaller --hole-diameter, or leave "
                        "--escape-hole out");
     }
+    asked_for_.push_back(plan_.holes.back().from);
     is_reached[network_of[plan_.holes.back().from]] = true;
   }
   std::vector<Members> reached;
   std::vector<std::uint32_t> renumbered(networks.size(), kOutside);
   for (std::size_t n = 0; n < networks.size(); ++n) {
-    if (is_reached[n]) {
+    if (is_reached[n] || request_.escape_holes.size() < 2) {
       renumbered[n] = static_cast<std::uint32_t>(reached.size());
       reached.push_back(std::move(networks[n]));
     } else {
@@ -227,6 +236,22 @@ std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) 
   }
   for (EscapeHole& hole : plan_.holes) hole.network = renumbered[network_of[hole.from]];
   return reached;
+}
+
+// Can a channel still lead from the hole's void to a neighbour?
+bool Planner::leaves_room_for_channel(const EscapeHole& hole) {
+  clearance_.place(hole.tube, hole.from, hole.from);
+  bool found = false;
+  for (const std::uint32_t to : clearance_.neighbours(hole.from)) {
+    for (std::size_t i = 0; i < ChannelWays::kCount && !found; ++i) {
+      const auto channel = ways_.channel(hole.from, to, i);
+      found = channel && ways_.is_free(*channel, i) &&
+              clearance_.keeps_gap_to_tubes(channel->tube, channel->from, channel->to);
+    }
+    if (found) break;
+  }
+  clearance_.take_back_last();
+  return found;
 }
 
 bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
@@ -285,8 +310,18 @@ void Planner::leave_out(std::uint32_t network) {
     ++dropped_.unopened;
     dropped_.volume += volume_of({i});
   }
-  std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return hole.network == network; });
-  std::erase_if(plan_.channels, [&](const Channel& c) { return network_of_[c.from] == kOutside; });
+  drop_tubes_of_left_out();
+}
+
+void Planner::drop_tubes_of_left_out() {
+  const auto is_left_out = [this](std::uint32_t i) { return network_of_[i] == kOutside; };
+  std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return is_left_out(hole.from); });
+  std::erase_if(plan_.channels, [&](const Channel& c) { return is_left_out(c.from) || is_left_out(c.to); });
+  for (std::vector<std::uint32_t>& channels : channels_of_) channels.clear();
+  for (std::uint32_t index = 0; index < plan_.channels.size(); ++index) {
+    channels_of_[plan_.channels[index].from].push_back(index);
+    channels_of_[plan_.channels[index].to].push_back(index);
+  }
 }
 
 // Opens a network below and above, before channels take the room for it: at balls from which most of it can
@@ -337,8 +372,7 @@ bool Planner::open_network(const Members& members, std::uint32_t network) {
 void Planner::open_and_join(std::span<const Members> networks, double whole_volume) {
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
     for (const std::uint32_t i : networks[n]) network_of_[i] = n;
-    const bool is_worth_it =
-        !request_.escape_holes.empty() || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
+    const bool is_worth_it = holes_of(n) > 0 || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
     if (!is_worth_it || !open_network(networks[n], n)) leave_out(n);
   }
   const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
@@ -490,7 +524,7 @@ void Planner::empty_pools() {
 }
 
 // Branches of which the largest share stays full are not made, until little stays. A branch is a void with
-// all that drains through it; those with an escape hole stay.
+// all that drains through it; those with an escape hole go last, and with one that was asked for never.
 void Planner::leave_out_pools() {
   for (std::size_t round = 0; round < spheres_.size(); ++round) {
     const TrappedPools pools = pools_now();
@@ -501,23 +535,27 @@ void Planner::leave_out_pools() {
       whole[i] = volume_of({i});
       full[i] = volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
     }
-    std::vector<bool> has_hole(spheres_.size(), false);
+    std::vector<bool> has_hole(spheres_.size(), false), is_asked_for(spheres_.size(), false);
     for (const EscapeHole& hole : plan_.holes) has_hole[hole.from] = true;
-    std::uint32_t worst = kOutside;
-    double most = kPoolsAimedAt;
+    for (const std::uint32_t i : asked_for_) is_asked_for[i] = true;
+    std::array<std::uint32_t, 2> worst{kOutside, kOutside};  // without a hole, and with one
+    std::array<double, 2> most{kPoolsAimedAt, kPoolsAimedAt};
     for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
       const std::uint32_t i = *at, next = spills.towards[*at];
-      if (!has_hole[i] && full[i] > most * whole[i]) {
-        most = full[i] / whole[i];
-        worst = i;
+      const std::size_t kind = has_hole[i] ? 1 : 0;
+      if (!is_asked_for[i] && full[i] > most[kind] * whole[i]) {
+        most[kind] = full[i] / whole[i];
+        worst[kind] = i;
       }
       if (next == kOutside) continue;
       whole[next] += whole[i];
       full[next] += full[i];
       has_hole[next] = has_hole[next] || has_hole[i];
+      is_asked_for[next] = is_asked_for[next] || is_asked_for[i];
     }
-    if (worst == kOutside) return;
-    leave_out_branch(worst, spills);
+    const std::uint32_t chosen = worst[0] != kOutside ? worst[0] : worst[1];
+    if (chosen == kOutside) return;
+    leave_out_branch(chosen, spills);
   }
 }
 
@@ -531,7 +569,34 @@ void Planner::leave_out_branch(std::uint32_t root, const SpillHeights& spills) {
     ++dropped_.full;
     dropped_.volume += volume_of({i});
   }
-  std::erase_if(plan_.channels, [&](const Channel& c) { return is_in_branch[c.from] || is_in_branch[c.to]; });
+  drop_tubes_of_left_out();
+}
+
+// Numbers the sets of voids that are joined anew, since leaving out may have cut some in two, and gives each
+// a second hole or leaves it out. Was one left out?
+bool Planner::regroup() {
+  DisjointSets sets(spheres_.size());
+  for (const Channel& channel : plan_.channels) sets.join(channel.from, channel.to);
+  std::map<std::size_t, std::uint32_t> number_of_root;
+  std::vector<Members> groups;
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    if (network_of_[i] == kOutside) continue;
+    const auto [place, is_new] =
+        number_of_root.try_emplace(sets.root(i), static_cast<std::uint32_t>(groups.size()));
+    if (is_new) groups.emplace_back();
+    network_of_[i] = place->second;
+    groups[place->second].push_back(i);
+  }
+  for (EscapeHole& hole : plan_.holes) hole.network = network_of_[hole.from];
+  bool has_left_out = false;
+  for (std::uint32_t n = 0; n < groups.size(); ++n) {
+    if (holes_of(n) >= 2) continue;
+    const Vec3d missing = has_low_hole(groups[n], n) ? roof_.up : -roof_.up;
+    if (open(groups[n], missing, n)) continue;
+    leave_out(n);
+    has_left_out = true;
+  }
+  return has_left_out;
 }
 
 PlannedDrainage Planner::run() {
@@ -555,7 +620,14 @@ PlannedDrainage Planner::run() {
   }
   if (request_.escape_holes.size() < 2) open_pools(whole);
   if (pools_now().after_both > kPoolsAimedAt * whole) empty_pools();
-  leave_out_pools();
+  do leave_out_pools();
+  while (regroup());
+  if (plan_.holes.empty()) {
+    throw NothingToRemoveError(
+        "more than " + shortened(100 * kPoolsAimedAt) +
+            " % of every group of voids would stay full, in print orientation and upside down",
+        "give other places with --escape-hole, a smaller --hole-diameter, or larger voids");
+  }
   return compacted();
 }
 

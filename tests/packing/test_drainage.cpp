@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <map>
 #include <numbers>
 #include <set>
 #include <vector>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "core/roof.h"
 #include "core/segment_distance.h"
@@ -306,6 +308,50 @@ TEST_F(PlanDrainage, OpensWhereItIsAsked) {
   ASSERT_EQ(planned.plan.holes.size(), 2U);
   EXPECT_LT(length(planned.plan.holes[0].tube.end - Vec3d{12, 20, 0}), 1.75);
   EXPECT_LT(length(planned.plan.holes[1].tube.end - Vec3d{38, 20, 40}), 1.75);
+}
+
+// The void right above the place is so small that its hole would leave no room for a channel.
+TEST_F(PlanDrainage, AHoleThatIsAskedForLeadsToAVoidThatOthersCanJoin) {
+  pack(test::make_box({0, 0, 0}, {40, 40, 40}));
+  request_.escape_holes = {{20, 20, 0}};
+  const PlannedDrainage planned = plan();
+  expect_sound(planned);
+  EXPECT_LT(length(planned.plan.holes[0].tube.end - Vec3d{20, 20, 0}), 1.75);
+  EXPECT_GE(planned.kept.size(), packing_.spheres.size() * 7 / 10);
+}
+
+TEST_F(PlanDrainage, OnePlaceThatIsAskedForLeavesOtherPartsToTheirOwn) {
+  pack(test::join(test::make_box({0, 0, 0}, {30, 30, 30}), test::make_box({50, 0, 0}, {80, 30, 30})));
+  request_.escape_holes = {{65, 15, 0}};
+  const PlannedDrainage planned = plan();
+  expect_sound(planned);
+  EXPECT_EQ(planned.plan.network_count, 2U);
+  // Two places are all the holes that the user wants.
+  request_.escape_holes = {{65, 15, 0}, {65, 15, 30}};
+  EXPECT_EQ(plan().plan.network_count, 1U);
+}
+
+// In a flat plate level channels keep liquid in both orientations: few voids can be kept, those with holes of
+// their own.
+TEST_F(PlanDrainage, LittleStaysInAPlateAndEachGroupHasTwoHoles) {
+  pack(test::make_box({0, 0, 0}, {150, 100, 14}));
+  const PlannedDrainage planned = plan();
+  expect_sound(planned);
+  EXPECT_LE(planned.plan.pools.after_both, 0.01 * planned.plan.pools.total);
+  DisjointSets sets(planned.kept.size());
+  for (const Channel& c : planned.plan.channels) sets.join(c.from, c.to);
+  std::map<std::size_t, std::set<std::uint32_t>> networks;
+  std::map<std::size_t, int> holes;
+  for (const EscapeHole& hole : planned.plan.holes) {
+    networks[sets.root(hole.from)].insert(hole.network);
+    ++holes[sets.root(hole.from)];
+  }
+  EXPECT_EQ(networks.size(), planned.plan.network_count);
+  for (const auto& [root, numbers] : networks) {
+    EXPECT_EQ(numbers.size(), 1U);
+    EXPECT_GE(holes[root], 2);
+  }
+  for (std::uint32_t i = 0; i < planned.kept.size(); ++i) EXPECT_TRUE(networks.contains(sets.root(i)));
 }
 
 TEST_F(PlanDrainage, DoesNotOpenIntoACavityOfTheModel) {

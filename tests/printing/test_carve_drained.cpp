@@ -265,6 +265,22 @@ TEST(OpenBall, IsTheHullLessWhatIsInsideTheRims) {
   }
 }
 
+// The circle of a roof at an overhang of 15 degrees: near the equator, where many points are as far from the
+// axis.
+TEST(OpenBall, ARimNearTheEquatorLeavesWhatIsBeyondIt) {
+  const Sphere sphere{{0, 0, 0}, 8, SphereKind::adaptive};
+  BallLadder ladder;
+  const BallTemplate& ball = ladder[ladder.level_for(sphere, 0.05)];
+  StarTriangulation whole(ball.directions, ball.triangles);
+  ASSERT_TRUE(whole.connect());
+  const Tube tube{{0, 0, 0}, {0, 0, 1}, 8 * std::cos(15 * std::numbers::pi / 180)};
+  const std::vector<Opening> openings{
+      {tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, sphere, {0, 0, 1}, 200)}};
+  const auto opened = open_ball(sphere, whole, openings);
+  ASSERT_TRUE(opened);
+  EXPECT_GE(opened->nearest, 8 - 0.06);
+}
+
 TEST(OpenBall, RefusesOpeningsThatMeet) {
   const Sphere sphere{{0, 0, 0}, 5, SphereKind::adaptive};
   BallLadder ladder;
