@@ -92,6 +92,16 @@ void close_above(Part& part, const Sphere& ball, const Roof& roof, double tolera
                           added.begin() + static_cast<std::ptrdiff_t>(of_cone));
 }
 
+// Small triangles may be turned over by rounding to fp32, far from the origin.
+bool faces_outward_when_rounded(const OpenedBall& surface, Vec3d centre) {
+  return std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
+    const Vec3d a = to_double(to_float(surface.positions[t[0]])) - centre,
+                b = to_double(to_float(surface.positions[t[1]])) - centre,
+                c = to_double(to_float(surface.positions[t[2]])) - centre;
+    return dot(cross(b - a, c - a), a + b + c) > 0;
+  });
+}
+
 // Where the ring of an opening begins among the vertices of its ball.
 struct RingPlace {
   std::uint32_t ball = 0;
@@ -170,7 +180,7 @@ class DrainedCarver {
       return false;
     part.surface = std::move(*opened);
     if (plan_.roof.shapes(ball.radius)) close_above(part, ball, plan_.roof, tolerance_);
-    return true;
+    return faces_outward_when_rounded(part.surface, ball.centre);
   }
 
   void open_balls() {
@@ -211,7 +221,8 @@ class DrainedCarver {
                            std::to_string(ball.centre.x) + ", " + std::to_string(ball.centre.y) + ", " +
                            std::to_string(ball.centre.z) + ") mm cannot be meshed within a tolerance of " +
                            std::to_string(tolerance_) + " mm",
-                       "raise --tolerance or --gap, or give a smaller --channel-diameter");
+                       "raise --tolerance or --gap, give a smaller --channel-diameter, or move the model "
+                       "nearer to the origin");
   }
 
   void add(Triangle t) { solid_.mesh.triangles.push_back(t); }

@@ -26,8 +26,9 @@ constexpr double kInfillOverlap = 0.25;
 constexpr double kSolidWidening = 0.3 * 1.05;
 // Solid strips along leaning walls are no narrower than this share of a line's spacing. Fitted.
 constexpr double kLeastStrip = 0.4;
-// Lines of sparse infill are joined along this share of the walls they end at. Fitted.
-constexpr double kConnectedShare = 0.35;
+// Of the walls that lines of sparse infill end at, they are joined along this share of what their own ends
+// leave: from each end to the next, and not from there on.
+constexpr double kConnectedShare = 0.5;
 // What gyroid infill really takes of the share it is asked for. Fitted.
 constexpr double kGyroidShare = 0.925;
 // Voids in company share skins and walls: they pay from this share of the radius on that a lone one needs.
@@ -235,12 +236,9 @@ FilamentUse use_of(const LayerSums& sums, const LayerRaster& raster, const Print
 
 }  // namespace
 
-double FilamentUse::fixed_mm3(double infill) const {
-  return wall_mm3 + solid_mm3 + (infill > 0 && infill < 1 ? connected_mm3 : 0);
-}
-
 double FilamentUse::volume_mm3(const PrintSettings& settings) const {
-  return fixed_mm3(settings.infill) + printed_share(settings) * sparse_mm3;
+  const double connected = settings.infill > 0 ? connected_mm3 * std::max(0.0, 1 - settings.infill) : 0;
+  return wall_mm3 + solid_mm3 + connected + printed_share(settings) * sparse_mm3;
 }
 
 FilamentUse operator-(const FilamentUse& a, const FilamentUse& b) {
@@ -330,11 +328,13 @@ std::optional<double> break_even_infill(const FilamentUse& difference, const Pri
   PrintSettings solid = settings;
   solid.infill = 1;
   if (difference.volume_mm3(solid) >= 0 || difference.sparse_mm3 >= 0) return std::nullopt;
-  constexpr double kSomeInfill = 0.5;
-  const double share = difference.fixed_mm3(kSomeInfill) / -difference.sparse_mm3;
+  // Linear in the infill: fixed + connected (1 - f) + sparse f.
   PrintSettings full = settings;
   full.infill = std::nextafter(1.0, 0.0);
-  return std::clamp(share / printed_share(full), 0.0, 1.0);
+  const double at_none = difference.wall_mm3 + difference.solid_mm3 + difference.connected_mm3;
+  const double falls_by = difference.connected_mm3 - printed_share(full) * difference.sparse_mm3;
+  if (falls_by <= 0) return std::nullopt;
+  return std::clamp(at_none / falls_by, 0.0, 1.0);
 }
 
 TimeChange time_change(const FilamentUse& whole, const FilamentUse& hollow, std::span<const Sphere> voids,

@@ -9,15 +9,14 @@
 
 namespace aerate {
 
-// What a print takes of filament, mm3, as a model of what a slicer does (docs/economics.md). All but the last
-// does not depend on the infill, so that one pass over the layers answers for every infill.
+// What a print takes of filament, mm3, as a model of what a slicer does (docs/economics.md). None of these
+// depends on the infill, so that one pass over the layers answers for every infill.
 struct FilamentUse {
   double wall_mm3 = 0;       // perimeters
   double solid_mm3 = 0;      // solid layers
-  double connected_mm3 = 0;  // what joins the lines of sparse infill along walls
+  double connected_mm3 = 0;  // what joins lines of sparse infill along walls, as these get very sparse
   double sparse_mm3 = 0;     // the space that sparse infill stands in
 
-  double fixed_mm3(double infill) const;  // all but the sparse infill
   double volume_mm3(const PrintSettings& settings) const;
 };
 FilamentUse operator-(const FilamentUse& a, const FilamentUse& b);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "pipeline/outward_shells.h"
 #include "printing/carve_drained.h"
 #include "printing/cut_holes.h"
+#include "printing/tube_openings.h"
 
 namespace aerate {
 namespace {
@@ -55,8 +57,31 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
 
 }  // namespace
 
+namespace {
+
+// Throws FailureError unless fp32 can hold the sides of such a tube anywhere in the model.
+void require_resolvable(const Mesh& model, double radius, double tolerance, const char* what) {
+  constexpr double kStepsPerSide = 8;
+  const Box3f box = bounding_box(model);
+  double largest = 0;
+  for (const Vec3d p : {to_double(box.lower), to_double(box.upper)})
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double step = largest * static_cast<double>(std::numeric_limits<float>::epsilon());
+  const auto sides = static_cast<double>(sides_of({{}, {}, radius}, tolerance));
+  if (2 * radius * std::sin(std::numbers::pi / sides) >= kStepsPerSide * step) return;
+  throw FailureError(
+      fmt::format("{} of {:g} mm at coordinates up to {:g} mm cannot be kept within a tolerance of "
+                  "{:g} mm: coordinates in a mesh file are single precision",
+                  what, 2 * radius, largest, tolerance),
+      "move the model nearer to the origin, raise --tolerance, or give a larger diameter");
+}
+
+}  // namespace
+
 PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
                            const DrainageRequest& request, double tolerance, Monitor& monitor) {
+  require_resolvable(model.mesh, request.channel_radius, tolerance, "a channel");
+  require_resolvable(model.mesh, request.hole_radius, tolerance, "an escape hole");
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
@@ -87,6 +112,18 @@ PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surfa
     tell_what_was_dropped(drainage, packed, monitor);
     return {std::move(drainage), std::move(std::get<OuterWithHoles>(cut))};
   }
+}
+
+void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits) {
+  const auto require = [&](double radius, const char* what, const char* option) {
+    if (radius <= kWidestTubeShare * limits.max_radius) return;
+    throw UsageError(fmt::format("{} of {:g} mm is too wide for every void: none is wider than {:g} mm "
+                                 "(--max-radius {:g})",
+                                 what, 2 * radius, 2 * limits.max_radius, limits.max_radius),
+                     fmt::format("give a smaller {}, or a larger --max-radius", option));
+  };
+  require(request.channel_radius, "a channel", "--channel-diameter");
+  require(request.hole_radius, "an escape hole", "--hole-diameter");
 }
 
 void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,

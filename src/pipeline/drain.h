@@ -26,6 +26,9 @@ struct PlannedHoles {
 PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
                            const DrainageRequest& request, double tolerance, Monitor& monitor);
 
+// Throws UsageError if voids within the limits are too small for the tubes that are asked for.
+void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits);
+
 // What the user should know about channels and escape holes that are wider than the printer bridges, if it
 // limits ceilings.
 void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,

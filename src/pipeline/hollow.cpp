@@ -113,6 +113,7 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
       options.modifiers ? options.packing : without_voids_that_cost(options.packing, options, monitor);
   report.limits = request.limits;
   report.process = request.process;
+  if (options.drainage) require_room_for_tubes(*options.drainage, request.limits);
   if (!options.modifiers && !options.drainage)
     warn_of_trapped_material(options.packing.process.process, monitor);
   PreparedModel model = load_and_inspect(options.model, options.load, monitor);

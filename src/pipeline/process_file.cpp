@@ -88,6 +88,12 @@ Process read_process_file(const std::filesystem::path& path) {
       refuse(path, fmt::format("unknown key \"{}\"", key));
     }
   }
+  const bool gives_one = json.contains(name_of(Limit::overhang)) || json.contains(name_of(Limit::bridge));
+  if (gives_one && !(process[Limit::overhang] && process[Limit::bridge])) {
+    refuse(path,
+           fmt::format("a limit for ceilings needs both \"overhang\" and \"bridge\", there is no \"{}\"",
+                       name_of(process[Limit::overhang] ? Limit::bridge : Limit::overhang)));
+  }
   return process;
 }
 

@@ -225,6 +225,8 @@ TEST(ProcessOptions, ContradictionsInAProcessFile) {
   refused(R"({"wall": -1})", {"-1", "out of range"});
   refused(R"({"gap": {"source": "nobody"}})", {"\"gap\""});
   refused(R"({"base": "laser"})", {"laser"});
+  refused(R"({"base": "sls", "bridge": 3})", {"both \"overhang\" and \"bridge\"", "no \"overhang\""});
+  refused(R"({"base": "sls", "overhang": 45})", {"no \"bridge\""});
   refused(R"({"drainage": "yes"})", {"drainage"});
   refused(R"({"material": "unobtainium"})", {"unobtainium"});
   refused("[1, 2]", {"one JSON object"});

@@ -58,7 +58,7 @@ TEST(Economics, ABlockHasWallsSkinsAndInfillOfItsOwnSize) {
   const double sparse = (side - 9 * 0.2) * inside * inside;
   EXPECT_NEAR(use.sparse_mm3, sparse, 0.02 * sparse);
   EXPECT_NEAR(use.volume_mm3(settings),
-              use.wall_mm3 + use.solid_mm3 + use.connected_mm3 + 0.2 * use.sparse_mm3, 1e-6);
+              use.wall_mm3 + use.solid_mm3 + 0.8 * use.connected_mm3 + 0.2 * use.sparse_mm3, 1e-6);
   EXPECT_NEAR(use.volume_mm3(with_infill(1)), side * side * side, 0.02 * side * side * side);
 }
 
