@@ -614,9 +614,12 @@ PlannedDrainage Planner::run() {
   channels_of_.resize(spheres_.size());
   open_and_join(found, whole);
   if (plan_.network_count == 0) {
-    throw NothingToRemoveError("no place was found for two escape holes of " +
-                                   shortened(2 * request_.hole_radius) + " mm, so no void can drain",
-                               "give a smaller --hole-diameter, larger voids, or places with --escape-hole");
+    throw NothingToRemoveError(
+        "no place was found for two escape holes of " + shortened(2 * request_.hole_radius) +
+            " mm, so no void can drain",
+        request_.escape_holes.empty()
+            ? "give a smaller --hole-diameter, larger voids, or places with --escape-hole"
+            : "ask for other places, or leave --escape-hole out");
   }
   if (request_.escape_holes.size() < 2) open_pools(whole);
   if (pools_now().after_both > kPoolsAimedAt * whole) empty_pools();

@@ -31,14 +31,16 @@ constexpr std::size_t kMostRefused = 100;
 // Above this share of the voids' volume pools are worth a notice.
 constexpr double kPoolsAimedAt = 0.01;
 
-std::string reasons(const UndrainedVoids& dropped) {
+std::string reasons(const UndrainedVoids& dropped, const DrainageRequest& request) {
   std::string text;
   const auto add = [&](std::size_t count, const char* why) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, why);
   };
   add(dropped.narrow, "too small for a channel");
   add(dropped.unreached, "with no room for a channel");
-  add(dropped.unopened, "in groups with no place for two escape holes, or not worth them");
+  add(dropped.unopened, request.escape_holes.size() >= 2
+                            ? "that the places asked for do not lead to"
+                            : "in groups with no place for two escape holes, or not worth them");
   add(dropped.full, "that would stay full");
   return text;
 }
@@ -47,7 +49,7 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
   const UndrainedVoids& dropped = drainage.dropped;
   if (dropped.count() > 0)
     monitor.notice(fmt::format("{} of {} voids ({:.1f} mm3) cannot be drained and are not made: {}",
-                               dropped.count(), packed, dropped.volume, reasons(dropped)));
+                               dropped.count(), packed, dropped.volume, reasons(dropped, drainage.request)));
   const TrappedPools& pools = drainage.plan.pools;
   if (pools.after_both > kPoolsAimedAt * pools.total)
     monitor.notice(fmt::format(
