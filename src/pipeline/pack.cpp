@@ -123,6 +123,13 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --wall or --min-radius");
   }
+  if (request.method == PackingMethod::adaptive && !limits.roof.shapes(limits.min_radius)) {
+    throw NothingToRemoveError(
+        fmt::format("{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near "
+                    "{}, but no place was found for one of --min-radius {:.3g} mm",
+                    file, limits.wall, fitting, place, limits.min_radius),
+        "give a smaller --min-radius or --wall");
+  }
   if (request.method == PackingMethod::adaptive) {
     throw NothingToRemoveError(
         fmt::format(
