@@ -71,10 +71,14 @@ void require_no_roofs(const PackingLimits& limits) {
                   largest_without_roof(limits.roof), std::ceil(2 * limits.max_radius)));
 }
 
-Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor& monitor) {
+Packing pack_unverified(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
+  const Mesh& mesh = model.mesh;
   switch (request.method) {
-    case PackingMethod::adaptive:
-      return pack_adaptive(mesh, request.limits, request.stop, monitor, request.device);
+    case PackingMethod::adaptive: {
+      AdaptiveOptions stop = request.stop;
+      stop.volume = model.inspection.filled_volume;
+      return pack_adaptive(mesh, request.limits, stop, monitor, request.device);
+    }
     case PackingMethod::given:
       return given_packing(mesh, request);
     case PackingMethod::hexagonal:
@@ -150,7 +154,7 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
 PackedModel pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
   require_memory_for_packing(model.mesh, request);
   monitor.stage("pack");
-  Packing packing = pack_unverified(model.mesh, request, monitor);
+  Packing packing = pack_unverified(model, request, monitor);
   monitor.check_interrupted();
 
   monitor.stage("verify");

@@ -233,6 +233,16 @@ TEST(Adaptive, StopsAtADensity) {
   }
 }
 
+// The surface integral counts what two parts have in common twice: 2,400 mm3 for the 2,000 that are filled.
+TEST(Adaptive, StopsAtADensityOfTheVolumeThatIsGiven) {
+  const Mesh parts =
+      test::join(test::make_box({0, 0, 0}, {10, 10, 10}), test::make_box({6, 0, 0}, {20, 10, 10}));
+  const Packing packing = pack(parts, {0, 0, 0.1, kInfinity}, {.target_density = 0.2, .volume = 2000});
+  const double volume = total_volume(packing);
+  EXPECT_GE(volume, 400);
+  EXPECT_LT(volume - 4.0 / 3.0 * std::numbers::pi * std::pow(packing.spheres.back().radius, 3), 400);
+}
+
 TEST(Adaptive, StartsFromALatticeWhereTheLargestRadiusIsSmall) {
   const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
   const Packing packing = pack(cube, {0, 0, 0.12, 0.5});
