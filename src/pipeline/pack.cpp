@@ -38,6 +38,11 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
                         (fault->kind == PackingFault::Kind::gap &&
                          request.limits.roof.shapes(packing.spheres[fault->other].radius));
   const char* const roof = has_roof ? " with the roofs that --bridge and --overhang ask for" : "";
+  const PackingLimits& limits = request.limits;
+  const auto radius_fault = [&](const char* relation, const char* option, double limit) {
+    return InputError(fmt::format("{} is {} {} {:.4g} mm", which, relation, option, limit),
+                      fmt::format("give the {} it was packed with, or pack again", option));
+  };
   switch (fault->kind) {
     case PackingFault::Kind::outside:
       throw InputError(which + " is outside the model",
@@ -55,6 +60,10 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
           fmt::format("{}{} leaves a gap of {:.4g} mm to sphere {}, the limit is {:.4g} mm", which, roof,
                       fault->clearance, fault->other + 1, request.limits.gap),
           fmt::format("give the {} it was packed with, or pack again", has_roof ? "--bridge" : "--gap"));
+    case PackingFault::Kind::too_small:
+      throw radius_fault("smaller than", "--min-radius", limits.min_radius);
+    case PackingFault::Kind::too_large:
+      throw radius_fault("larger than", "--max-radius", limits.max_radius);
   }
   throw FailureError("unknown fault of a packing");
 }
