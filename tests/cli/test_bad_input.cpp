@@ -405,6 +405,7 @@ TEST(BadInput, MoreThanMemoryHoldsIsRefusedBeforeWorkStarts) {
     expect_refused(job, result, kUsage, {"would need about", "are available", radius});
   };
   refused("adaptive", "--min-radius");
+  refused("adaptive", "--max-voids");
   refused("hexagonal", "--max-radius");
 }
 
