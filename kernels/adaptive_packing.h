@@ -171,6 +171,7 @@ class AdaptivePacker {
 
  private:
   static constexpr double kLatticeDiameters = 3;
+  static constexpr double kTrifle = 1e-9;  // of a radius
   // The grid of balls is made anew when the largest clearance left is this much of its reach: long lists cost
   // more than new ones.
   static constexpr double kRebuildRatio = 0.75;
@@ -192,6 +193,7 @@ class AdaptivePacker {
     const Vec3d size = box_.upper - box_.lower;
     const double half_extent = 0.5 * min_of(size.x, min_of(size.y, size.z));
     double largest = min_of(half_extent, parameters_.max_radius);
+    least_radius_ = least_radius(largest);
     place_lattice(half_extent);
     if (done_) return;
     tree_.make_roots(field(), box_, at_a_time_);
@@ -202,22 +204,31 @@ class AdaptivePacker {
     threshold_ =
         parameters_.max_radius < half_extent ? largest - 4 * shrink_ : largest * parameters_.level_ratio;
     while (true) {
-      if (threshold_ < parameters_.min_radius) threshold_ = parameters_.min_radius;
+      if (threshold_ < least_radius_) threshold_ = least_radius_;
       if (largest < kRebuildRatio * grid_.reach()) rebuild_grids(largest);
       while (place_round()) {
         if (done_) return;
       }
-      if (threshold_ <= parameters_.min_radius || threshold_ < 1e-7 * half_extent) break;
+      if (threshold_ <= least_radius_ || threshold_ < 1e-7 * half_extent) break;
       largest = threshold_;
       threshold_ *= parameters_.level_ratio;
     }
+  }
+
+  // The least radius, or where it is that of the largest ball a trifle less, as for a lattice: what is taken
+  // off against rounding would leave no ball at all.
+  double least_radius(double largest) const {
+    if (parameters_.min_radius > largest) return parameters_.min_radius;
+    return min_of(parameters_.min_radius, largest - max_of(kTrifle * largest, 4 * shrink_));
   }
 
   // Balls of the largest radius where they rest on others. What floats, or the last few that trickle in one
   // by one, is left to the rounds that follow.
   void settle_largest() {
     constexpr std::size_t kFewest = 200;  // of those that stand, a round adds at least one for so many
-    const Settling settling{parameters_.max_radius, parameters_.settle_reach * parameters_.max_radius};
+    Settling settling{parameters_.max_radius, parameters_.settle_reach * parameters_.max_radius};
+    const double spare = (parameters_.max_radius - shrink_ - least_radius_) / parameters_.max_radius;
+    settling.tolerance = min_of(settling.tolerance, 0.5 * spare);
     threshold_ = settling.least();
     std::size_t before = 0;
     do {
@@ -252,7 +263,7 @@ class AdaptivePacker {
     if (!(parameters_.max_radius * kLatticeDiameters < half_extent)) return;
     if (parameters_.roof.shapes(parameters_.max_radius)) return;
     // A trifle smaller, so that ten balls fit where ten diameters are the length of a box.
-    const double radius = parameters_.max_radius * (1 - 1e-9);
+    const double radius = parameters_.max_radius * (1 - kTrifle);
     const LatticeFit fit{bvh_.view, winding_.view, radius + parameters_.wall + shrink_};
     Lattice best;
     std::size_t best_count = 0;
@@ -319,7 +330,7 @@ class AdaptivePacker {
                               : among_the_first() ? parameters_.first_cell_ratio
                                                   : parameters_.cell_ratio;
     const View<const std::uint32_t> cells =
-        tree_.refine(field(), threshold_, cell_ratio * threshold_, max_of(parameters_.min_radius, 0.0));
+        tree_.refine(field(), threshold_, cell_ratio * threshold_, max_of(least_radius_, 0.0));
     if (cells.size == 0) return false;
     search_count_ += cells.size;
     search(cells, settling);
@@ -388,6 +399,7 @@ class AdaptivePacker {
   WindingIndex<Executor> winding_;
   double shrink_ = 0;
   double threshold_ = 0;
+  double least_radius_ = 0;
   double volume_ = 0;
   bool done_ = false;
   std::size_t at_a_time_ = 0;

@@ -194,7 +194,8 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
       best.bound = max_of(model, best.value);
       return best;
     }
-    const double enough = model - limits.tolerance;
+    // What is clipped has no constraint to enter, so it has to be enough.
+    const double enough = min_of(model, limits.most) - limits.tolerance;
     here = clearance_at(field, anchor, p, limits.most, enough);
     if (here.value < enough) continue;
     if (here.value > best.value) {

@@ -89,10 +89,11 @@ void add_ceilings(Lines& lines, const HollowReport& report) {
   if (!output.ceilings) return;
   const Roof& roof = report.limits.roof;
   lines.add("ceilings",
-            "{:.2f} mm wide at most (bridge {:g}, tolerance {:.3g}); {} of {} voids have roofs; up "
+            "{:.2f} mm wide at most (bridge {:g}, tolerance {:.3g}); {} of {} with roofs; up "
             "is {} ({})",
             output.ceilings->widest, roof.bridge(), report.tolerance_used, grouped(output.roof_count),
-            grouped(output.void_count), report.process.direction.name, report.process.direction.origin);
+            count_of(output.void_count, "void", "voids"), report.process.direction.name,
+            report.process.direction.origin);
 }
 
 // "0.620 to 3.500 mm"

@@ -46,7 +46,7 @@ kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits,
   input.parameters.max_count = options.max_count;
   input.parameters.roof = limits.roof;
   if (options.target_density < 1) {
-    input.parameters.max_volume = options.target_density * input.volume;
+    input.parameters.max_volume = options.target_density * options.volume.value_or(input.volume);
   }
   input.progress = [&monitor](double share) {
     monitor.progress(share);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "core/device.h"
 #include "core/mesh.h"
@@ -13,8 +14,10 @@ namespace aerate {
 struct AdaptiveOptions {
   // Packing stops when there are this many spheres...
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
-  // ...or when they fill this share of the model's volume, in (0, 1).
+  // ...or when they fill this share of the model's volume, in (0, 1)...
   double target_density = 1.0;
+  // ...which is this, mm3, for a model whose shells overlap; else what its surface bounds.
+  std::optional<double> volume = std::nullopt;
 };
 
 // Largest void first: again and again a sphere where the clearance to the surface (less `wall`) and to the

@@ -125,6 +125,10 @@ std::optional<PackingFault> find_fault(const SurfaceIndex& surface, const Packin
       first = PackingFault{kind, i, i, wall};
     } else if (wall < packing.limits.wall - tolerance) {
       first = PackingFault{PackingFault::Kind::wall, i, i, wall};
+    } else if (packing.spheres[i].radius < packing.limits.min_radius - tolerance) {
+      first = PackingFault{PackingFault::Kind::too_small, i, i, wall};
+    } else if (packing.spheres[i].radius > packing.limits.max_radius + tolerance) {
+      first = PackingFault{PackingFault::Kind::too_large, i, i, wall};
     }
   }
   for (const SpherePair& pair : find_pairs_within(packing.spheres, packing.limits.gap, packing.limits.roof)) {

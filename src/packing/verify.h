@@ -25,6 +25,8 @@ struct PackingFault {
     overlapped_region,  // the winding number is neither 0 nor 1
     wall,               // too near to the surface
     gap,                // too near to another sphere
+    too_small,          // smaller than min_radius
+    too_large,          // larger than max_radius
   };
   Kind kind = Kind::outside;
   std::size_t sphere = 0;

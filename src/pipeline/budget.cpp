@@ -44,7 +44,9 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
       require(
           needed,
           fmt::format("packing spheres down to radius {:.3g} mm into this model", request.limits.min_radius),
-          "give a larger --min-radius: the number of spheres grows with the inverse of its cube");
+          "give a larger --min-radius (the number of spheres grows with the inverse of its cube), or limit "
+          "it "
+          "with --max-voids");
       return;
     case PackingMethod::given:
       return;

@@ -38,6 +38,11 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
                         (fault->kind == PackingFault::Kind::gap &&
                          request.limits.roof.shapes(packing.spheres[fault->other].radius));
   const char* const roof = has_roof ? " with the roofs that --bridge and --overhang ask for" : "";
+  const PackingLimits& limits = request.limits;
+  const auto radius_fault = [&](const char* relation, const char* option, double limit) {
+    return InputError(fmt::format("{} is {} {} {:.4g} mm", which, relation, option, limit),
+                      fmt::format("give the {} it was packed with, or pack again", option));
+  };
   switch (fault->kind) {
     case PackingFault::Kind::outside:
       throw InputError(which + " is outside the model",
@@ -55,6 +60,10 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
           fmt::format("{}{} leaves a gap of {:.4g} mm to sphere {}, the limit is {:.4g} mm", which, roof,
                       fault->clearance, fault->other + 1, request.limits.gap),
           fmt::format("give the {} it was packed with, or pack again", has_roof ? "--bridge" : "--gap"));
+    case PackingFault::Kind::too_small:
+      throw radius_fault("smaller than", "--min-radius", limits.min_radius);
+    case PackingFault::Kind::too_large:
+      throw radius_fault("larger than", "--max-radius", limits.max_radius);
   }
   throw FailureError("unknown fault of a packing");
 }
@@ -71,10 +80,14 @@ void require_no_roofs(const PackingLimits& limits) {
                   largest_without_roof(limits.roof), std::ceil(2 * limits.max_radius)));
 }
 
-Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor& monitor) {
+Packing pack_unverified(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
+  const Mesh& mesh = model.mesh;
   switch (request.method) {
-    case PackingMethod::adaptive:
-      return pack_adaptive(mesh, request.limits, request.stop, monitor, request.device);
+    case PackingMethod::adaptive: {
+      AdaptiveOptions stop = request.stop;
+      stop.volume = model.inspection.filled_volume;
+      return pack_adaptive(mesh, request.limits, stop, monitor, request.device);
+    }
     case PackingMethod::given:
       return given_packing(mesh, request);
     case PackingMethod::hexagonal:
@@ -123,6 +136,13 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --wall or --min-radius");
   }
+  if (request.method == PackingMethod::adaptive && !limits.roof.shapes(limits.min_radius)) {
+    throw NothingToRemoveError(
+        fmt::format("{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near "
+                    "{}, but no place was found for one of --min-radius {:.3g} mm",
+                    file, limits.wall, fitting, place, limits.min_radius),
+        "give a smaller --min-radius or --wall");
+  }
   if (request.method == PackingMethod::adaptive) {
     throw NothingToRemoveError(
         fmt::format(
@@ -143,7 +163,7 @@ Packing pack_unverified(const Mesh& mesh, const PackingRequest& request, Monitor
 PackedModel pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
   require_memory_for_packing(model.mesh, request);
   monitor.stage("pack");
-  Packing packing = pack_unverified(model.mesh, request, monitor);
+  Packing packing = pack_unverified(model, request, monitor);
   monitor.check_interrupted();
 
   monitor.stage("verify");

@@ -374,6 +374,21 @@ TEST(BadInput, GivenSpheresThatAreNoPackingOfTheModel) {
   file_refused("list.stl", "solid\n", kUsage, {"list.stl", ".csv, .json or .ply"});
 }
 
+TEST(BadInput, GivenSpheresOfOtherRadiiThanAskedFor) {
+  const Job job;
+  const auto model = job.input("block.stl", make_box({0, 0, 0}, {30, 30, 30}));
+  const auto spheres = job.input("list.csv", "x,y,z,radius,kind\n10,10,10,3,adaptive\n20,20,20,2,adaptive\n");
+  const auto hollow = [&](const char* option, const char* radius) {
+    return run(job.hollow(model, {"--spheres", spheres.string(), option, radius}));
+  };
+  expect_refused(job, hollow("--min-radius", "2.01"), kUnreadable,
+                 {"list.csv: sphere 2 (radius 2 mm", "smaller than --min-radius 2.01 mm"});
+  expect_refused(job, hollow("--max-radius", "2.99"), kUnreadable,
+                 {"list.csv: sphere 1 (radius 3 mm", "larger than --max-radius 2.99 mm"});
+  EXPECT_EQ(hollow("--min-radius", "2.00001").exit_code, 0);
+  EXPECT_EQ(hollow("--max-radius", "2.99999").exit_code, 0);
+}
+
 TEST(BadInput, UnknownMaterialListsTheKnownOnes) {
   const Job job;
   const auto model = job.input("block.stl", block());
@@ -390,6 +405,7 @@ TEST(BadInput, MoreThanMemoryHoldsIsRefusedBeforeWorkStarts) {
     expect_refused(job, result, kUsage, {"would need about", "are available", radius});
   };
   refused("adaptive", "--min-radius");
+  refused("adaptive", "--max-voids");
   refused("hexagonal", "--max-radius");
 }
 

@@ -300,6 +300,16 @@ TEST(Command, PackWritesATable) {
       run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", job.output("spheres.txt")}).exit_code, 2);
 }
 
+TEST(Command, PackStopsAtTheDensityThatItReports) {
+  const Job job;
+  const auto model =
+      job.input("parts.stl", join(make_box({0, 0, 0}, {30, 30, 30}), make_box({18, 0, 0}, {60, 30, 30})));
+  const ProcessResult result = run({AERATE_EXECUTABLE, "pack", model, "-o", job.output("spheres.csv"),
+                                    "--target-density", "20", "--min-radius", "0.5"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, " 20."));
+}
+
 // Each line's sphere keeps the default wall to the sides of a box.
 void expect_inside(const std::string& csv, Vec3d lower, Vec3d upper) {
   std::istringstream lines(csv);

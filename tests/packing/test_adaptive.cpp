@@ -11,6 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "core/error.h"
+#include "core/roof.h"
 #include "kernels/adaptive_packing.h"
 #include "kernels/exec_cpu.h"
 #include "packing/adaptive.h"
@@ -232,6 +233,16 @@ TEST(Adaptive, StopsAtADensity) {
   }
 }
 
+// The surface integral counts what two parts have in common twice: 2,400 mm3 for the 2,000 that are filled.
+TEST(Adaptive, StopsAtADensityOfTheVolumeThatIsGiven) {
+  const Mesh parts =
+      test::join(test::make_box({0, 0, 0}, {10, 10, 10}), test::make_box({6, 0, 0}, {20, 10, 10}));
+  const Packing packing = pack(parts, {0, 0, 0.1, kInfinity}, {.target_density = 0.2, .volume = 2000});
+  const double volume = total_volume(packing);
+  EXPECT_GE(volume, 400);
+  EXPECT_LT(volume - 4.0 / 3.0 * std::numbers::pi * std::pow(packing.spheres.back().radius, 3), 400);
+}
+
 TEST(Adaptive, StartsFromALatticeWhereTheLargestRadiusIsSmall) {
   const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
   const Packing packing = pack(cube, {0, 0, 0.12, 0.5});
@@ -265,6 +276,34 @@ TEST(Adaptive, BallsOfTheLargestRadiusComeToRestWhereNoLatticeFits) {
     }
     if (test::distance_to_surface(bracket, s.centre) < s.radius + 0.01) ++touched;
     EXPECT_GE(touched, 1) << s.centre.x << ' ' << s.centre.y << ' ' << s.centre.z;
+  }
+}
+
+TEST(Adaptive, PlacesSpheresOfOneSizeWhereNoLatticeFits) {
+  struct Case {
+    Mesh mesh;
+    PackingLimits limits;
+    std::size_t least;
+  };
+  const Roof roof = make_roof({.degrees = 45, .bridge = 3, .up = {0, 0, 1}});
+  for (const Case& c : {Case{test::make_box({0, 0, 0}, {30, 30, 30}), {0, 0, 6, 6}, 8},
+                        Case{test::make_box({0, 0, 0}, {30, 30, 30}), {1, 0.5, 5.9999, 6}, 8},
+                        Case{test::make_box({0, 0, 0}, {30, 30, 30}), {1, 0.5, 5, 5, roof}, 4},
+                        Case{make_bracket(), {0.3, 0.2, 2.2, 2.2}, 20}}) {
+    const Packing packing = verify_packing(c.mesh, pack(c.mesh, c.limits));
+    EXPECT_GE(packing.spheres.size(), c.least);
+    EXPECT_EQ(packing.statistics.dropped_by_verification, 0U);
+    for (const Sphere& s : packing.spheres) EXPECT_GE(s.radius, c.limits.min_radius * (1 - 2e-9));
+  }
+}
+
+// In its middle the clearance is above the largest radius everywhere.
+TEST(Adaptive, FillsASlabThickerThanItsLargestSpheres) {
+  const Mesh slab = test::make_box({0, 0, 0}, {12, 12, 1});
+  for (const double min_radius : {0.3, 0.4}) {
+    const Packing packing = verify_packing(slab, pack(slab, {0, 0, min_radius, 0.4}));
+    EXPECT_GT(total_volume(packing) / 144, 0.37);
+    EXPECT_EQ(packing.statistics.dropped_by_verification, 0U);
   }
 }
 
