@@ -52,6 +52,7 @@ struct AdaptiveParameters {
   double settle_cell_ratio = 1.4;  // the same for balls that settle: more starts, better places
   double settle_reach = 1;         // to the largest radius; 0 for balls of it that stay where there is room
   double least_lattice_share = 0.25;  // of the volume, with half the gap around each ball: else no lattice
+  double least_slab_lattice_share = 0.5;  // the same in slabs, where the radii are not alike
   std::uint32_t lattice_trials = 16;
   double tolerance_ratio = 1e-4;  // precision of the maxima to the level's least radius
 };
@@ -171,6 +172,7 @@ class AdaptivePacker {
 
  private:
   static constexpr double kLatticeDiameters = 3;
+  static constexpr double kAlike = 0.95;   // radii, to the largest
   static constexpr double kTrifle = 1e-9;  // of a radius
   // The grid of balls is made anew when the largest clearance left is this much of its reach: long lists cost
   // more than new ones.
@@ -194,7 +196,7 @@ class AdaptivePacker {
     const double half_extent = 0.5 * min_of(size.x, min_of(size.y, size.z));
     double largest = min_of(half_extent, parameters_.max_radius);
     least_radius_ = least_radius(largest);
-    place_lattice(half_extent);
+    place_lattice(half_extent, 0.5 * middle_of(size));
     if (done_) return;
     tree_.make_roots(field(), box_, at_a_time_);
     rebuild_grids(largest);
@@ -213,6 +215,10 @@ class AdaptivePacker {
       largest = threshold_;
       threshold_ *= parameters_.level_ratio;
     }
+  }
+
+  static double middle_of(Vec3d size) {
+    return max_of(min_of(size.x, size.y), min_of(max_of(size.x, size.y), size.z));
   }
 
   // The least radius, or where it is that of the largest ball a trifle less, as for a lattice: what is taken
@@ -256,11 +262,18 @@ class AdaptivePacker {
 
   FieldView<Shape> field() { return {bvh_.view, winding_.view, grid_.view(), parameters_.wall}; }
 
-  // Starts from the densest lattice of balls of max_radius where that is small against the model, in the best
-  // of several orientations and offsets; `Lattice` says which there are. In slender models a lattice fits
-  // badly whatever its offset, and balls that settle are denser. There is none for voids with roofs.
-  void place_lattice(double half_extent) {
-    if (!(parameters_.max_radius * kLatticeDiameters < half_extent)) return;
+  // Starts from the densest lattice of balls of max_radius where that is small against the model in two
+  // directions at least, in the best of several orientations and offsets; `Lattice` says which there are. In
+  // slender models a lattice fits badly whatever its offset, and balls that settle are denser. In a slab it
+  // has to leave little room for what is between the radii, or they have to be alike. There is none for voids
+  // with roofs.
+  void place_lattice(double half_thickness, double half_middle) {
+    const double least_half = parameters_.max_radius * kLatticeDiameters;
+    if (!(least_half < half_middle)) return;
+    const bool fills_by_itself =
+        least_half < half_thickness || parameters_.min_radius >= kAlike * parameters_.max_radius;
+    const double least_share =
+        fills_by_itself ? parameters_.least_lattice_share : parameters_.least_slab_lattice_share;
     if (parameters_.roof.shapes(parameters_.max_radius)) return;
     // A trifle smaller, so that ten balls fit where ten diameters are the length of a box.
     const double radius = parameters_.max_radius * (1 - kTrifle);
@@ -275,7 +288,7 @@ class AdaptivePacker {
       best = lattice;
       best_count = count;
     }
-    if (best_count == 0 || lattice_share(best_count) < parameters_.least_lattice_share) return;
+    if (best_count == 0 || lattice_share(best_count) < least_share) return;
     best_count = std::min(best_count, parameters_.max_count);
     lattice_count_ = best_count;
     balls_.resize(executor_, best_count);

@@ -29,6 +29,7 @@ TEST_F(AdaptiveCuda, PacksATorusAsTheCpuDoes) {
   const Mesh torus = test::make_torus(5, 2, 48, 24);
   expect_same_on_cuda(torus, {0, 0, 0.5, 10}, {}, 20);
   expect_same_on_cuda(torus, {0.2, 0.1, 0.4, 1.0}, {}, 20);
+  expect_same_on_cuda(torus, {0.2, 0.1, 1.0, 1.0}, {}, 10);
 }
 
 TEST_F(AdaptiveCuda, PacksALatticeFirstWhereSpheresAreSmall) {

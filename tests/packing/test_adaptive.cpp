@@ -254,6 +254,17 @@ TEST(Adaptive, StartsFromALatticeWhereTheLargestRadiusIsSmall) {
   EXPECT_GE(measure_clearances(cube, packing.spheres).gap.value(), 0);
 }
 
+TEST(Adaptive, StartsFromALatticeInASlabWhereRadiiAreAlike) {
+  const Mesh slab = test::make_box({0, 0, 0}, {12, 12, 1});
+  const Packing packing = pack(slab, {0, 0, 0.3, 0.3});
+  EXPECT_TRUE(
+      std::ranges::all_of(packing.spheres, [](const Sphere& s) { return s.kind == SphereKind::lattice; }));
+  EXPECT_GT(total_volume(packing) / 144, 0.39);
+  const Packing others = pack(slab, {0, 0, 0.2, 0.3});
+  EXPECT_TRUE(
+      std::ranges::none_of(others.spheres, [](const Sphere& s) { return s.kind == SphereKind::lattice; }));
+}
+
 TEST(Adaptive, FillsABoxThatIsAWholeNumberOfDiametersWide) {
   const Mesh cube = test::make_box({0, 0, 0}, {10, 10, 10});
   const Packing packing = pack(cube, {0, 0, 0.45, 0.5});
