@@ -90,7 +90,7 @@ std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, std::span<
     remove_at(origins, cut->removed);
     apply(*cut, mesh);
     origins.resize(mesh.triangles.size(), kNew);
-    result.holes.push_back({std::move(cut->sides), mesh.positions.size()});
+    result.holes.push_back({std::move(cut->sides), mesh.positions.size(), prism.ring});
   }
   if (!uncut.indices.empty()) return uncut;
   std::sort(result.cut_triangles.begin(), result.cut_triangles.end());

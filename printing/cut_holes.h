@@ -32,6 +32,7 @@ struct OuterWithHoles {
   struct Hole {
     std::vector<Triangle> sides;
     std::size_t ring_base = 0;  // indices from this on mean the hole's ring on its ball
+    std::vector<Vec3f> ring;
   };
   Mesh mesh;  // the triangles that were kept, in their order; then what is left of those that were cut
   std::size_t kept_triangle_count = 0;

@@ -121,7 +121,8 @@ bool HolePlaces::is_sound_alone(const EscapeHole& hole) const {
 // from the highest that leaves the ball below it. nullopt if that is the same as the one before.
 std::optional<Vec3d> HolePlaces::start_inside(const Sphere& ball, Vec3d direction, Vec3d down,
                                               std::size_t point) const {
-  const double farthest = kWidestTubeShare * ball.radius - request_.hole_radius;
+  // A trifle less than the widest, so that rounding does not matter.
+  const double farthest = (kWidestTubeShare * ball.radius - request_.hole_radius) * (1 - 1e-9);
   const double share = static_cast<double>(point) / (kPoints - 1);
   if (limits_.roof.shapes(ball.radius) && dot(down, limits_.roof.up) > 0) {
     const auto way = way_below_roof(ball, limits_.roof, direction, request_.hole_radius);

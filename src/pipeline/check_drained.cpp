@@ -1,9 +1,11 @@
 #include "pipeline/check_drained.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -266,6 +268,26 @@ std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const Ex
 
 bool is_crossed_near(const Mesh& model, const SurfaceIndex& surface, const Tube& tube) {
   const Mesh part = part_of(model, surface.triangles_near(cut_of(tube), tube.radius + kNeighbourhood));
+  return find_self_intersections(part).pair_count > 0;
+}
+
+bool is_crossed_at(const OuterWithHoles& outer, std::size_t hole, const Tube& tube) {
+  Mesh part = part_of(outer.mesh, triangles_near(outer.mesh, cut_of(tube), tube.radius + kNeighbourhood));
+  const OuterWithHoles::Hole& cut = outer.holes[hole];
+  // The part has vertices of its own: those of the sides are found among them by their place.
+  std::map<std::array<float, 3>, std::uint32_t> index_of;
+  for (std::uint32_t v = 0; v < part.positions.size(); ++v) {
+    const Vec3f p = part.positions[v];
+    index_of.emplace(std::array{p.x, p.y, p.z}, v);
+  }
+  const auto index = [&](std::uint32_t v) {
+    const Vec3f p = v < cut.ring_base ? outer.mesh.positions[v] : cut.ring[v - cut.ring_base];
+    const auto [place, is_new] =
+        index_of.emplace(std::array{p.x, p.y, p.z}, static_cast<std::uint32_t>(part.positions.size()));
+    if (is_new) part.positions.push_back(p);
+    return place->second;
+  };
+  for (const Triangle& t : cut.sides) part.triangles.push_back({index(t[0]), index(t[1]), index(t[2])});
   return find_self_intersections(part).pair_count > 0;
 }
 

@@ -11,6 +11,7 @@
 #include "mesh/inspect.h"
 #include "pipeline/drainage_facts.h"
 #include "pipeline/report.h"
+#include "printing/cut_holes.h"
 
 namespace aerate {
 
@@ -29,6 +30,10 @@ struct ExpectedDrained {
 // Whether the model, given with its index, runs through itself near a tube's outer end. A hole there could
 // not be told from such a flaw.
 bool is_crossed_near(const Mesh& model, const SurfaceIndex& surface, const Tube& tube);
+
+// Whether the surface with its holes, and the sides of one of these, run through themselves where it comes
+// out.
+bool is_crossed_at(const OuterWithHoles& outer, std::size_t hole, const Tube& tube);
 
 // Checks and measures a mesh that was read back from disk, its vertices welded:
 //   - every triangle is the one that was written, coordinate for coordinate; the first ones are the model's,

@@ -78,6 +78,17 @@ void require_resolvable(const Mesh& model, double radius, double tolerance, cons
       "move the model nearer to the origin, raise --tolerance, or give a larger diameter");
 }
 
+// The holes that were not cut, or not cut well.
+std::vector<std::size_t> failed_holes(const std::variant<OuterWithHoles, UncutHoles>& cut,
+                                      const DrainagePlan& plan) {
+  if (const auto* uncut = std::get_if<UncutHoles>(&cut)) return uncut->indices;
+  std::vector<std::size_t> failed;
+  for (std::size_t i = 0; i < plan.holes.size(); ++i) {
+    if (is_crossed_at(std::get<OuterWithHoles>(cut), i, plan.holes[i].tube)) failed.push_back(i);
+  }
+  return failed;
+}
+
 }  // namespace
 
 PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
@@ -103,9 +114,10 @@ PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surfa
     std::vector<Sphere> kept;
     for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
     auto cut = cut_holes(model.mesh, kept, planned.plan, {.tolerance = tolerance}, monitor);
-    if (const auto* uncut = std::get_if<UncutHoles>(&cut)) {
-      if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[uncut->indices.front()]);
-      for (const std::size_t i : uncut->indices) refused.push_back(planned.plan.holes[i].tube);
+    const std::vector<std::size_t> failed = failed_holes(cut, planned.plan);
+    if (!failed.empty()) {
+      if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[failed.front()]);
+      for (const std::size_t i : failed) refused.push_back(planned.plan.holes[i].tube);
       continue;
     }
     const std::size_t packed = packing.spheres.size();
