@@ -290,7 +290,8 @@ class DrainedCarver {
 
 DrainedSolid carve_drained(OuterWithHoles outer, std::span<const Sphere> balls, const DrainagePlan& plan,
                            Monitor& monitor) {
-  return DrainedCarver(balls, plan, outer.tolerance, monitor).carve(std::move(outer));
+  DrainedCarver carver(balls, plan, outer.tolerance, monitor);
+  return carver.carve(std::move(outer));
 }
 
 DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,

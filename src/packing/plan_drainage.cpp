@@ -623,8 +623,9 @@ PlannedDrainage Planner::run() {
   }
   if (request_.escape_holes.size() < 2) open_pools(whole);
   if (pools_now().after_both > kPoolsAimedAt * whole) empty_pools();
-  do leave_out_pools();
-  while (regroup());
+  do {
+    leave_out_pools();
+  } while (regroup());
   if (plan_.holes.empty()) {
     throw NothingToRemoveError(
         "more than " + shortened(100 * kPoolsAimedAt) +

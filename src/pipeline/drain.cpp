@@ -162,13 +162,15 @@ void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const Dra
 DrainedSolid carve_within(const PreparedModel& model, OuterWithHoles outer, const Packing& packing,
                           const DrainagePlan& plan, double& tolerance,
                           std::optional<std::size_t> max_triangles, Monitor& monitor) {
+  // Cut for another tolerance, its holes have other sides.
+  const bool fits = outer.tolerance == tolerance;
+  DrainedSolid solid =
+      fits ? carve_drained(std::move(outer), packing.spheres, plan, monitor)
+           : carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
   for (int i = 0; i < kMostTries; ++i) {
-    DrainedSolid solid =
-        outer.tolerance == tolerance
-            ? carve_drained(std::move(outer), packing.spheres, plan, monitor)
-            : carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
     if (!max_triangles || solid.mesh.triangles.size() <= *max_triangles) return solid;
     tolerance *= kLooser;
+    solid = carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
   }
   throw UsageError(
       fmt::format("--max-triangles {}: drained voids take more, however coarse they are", *max_triangles),
