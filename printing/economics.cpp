@@ -165,6 +165,22 @@ void add_grown(const std::vector<std::uint8_t>& seeds, double reach, const Layer
   }
 }
 
+// Adds to `solid` the infill between two solid pixels, in any direction: the slicer merges sparse regions
+// into solid ones that they part where they are narrower than 1.26 spacings of its lines, which is about a
+// pixel.
+void close_narrow_gaps(const std::vector<std::uint8_t>& layer, const Layers& layers,
+                       const LayerRaster& raster, std::vector<std::uint8_t>& solid) {
+  const std::vector<std::uint8_t> before = solid;
+  const std::size_t columns = raster.count_x;
+  for (std::size_t row = 1; row + 1 < raster.count_y; ++row) {
+    for (std::size_t i = row * columns + 1; i + 1 < (row + 1) * columns; ++i) {
+      if (before[i] != 0 || !layers.is_fill(layer[i])) continue;
+      for (const std::size_t step : {std::size_t{1}, columns, columns + 1, columns - 1})
+        if (before[i - step] != 0 && before[i + step] != 0) solid[i] = 1;
+    }
+  }
+}
+
 // Pixels of a layer's infill that are printed solid: some layers under what looks up, and over what looks
 // down. Walls that lean are closed the same way, with one layer fewer.
 std::vector<std::uint8_t> solid_fill(const Layers& layers, std::size_t k, const LayerRaster& raster,
@@ -187,6 +203,7 @@ std::vector<std::uint8_t> solid_fill(const Layers& layers, std::size_t k, const 
   look(+1, settings.top_layers);
   look(-1, settings.bottom_layers);
   add_grown(exposed, kSkinMargin, raster, solid);
+  close_narrow_gaps(layer, layers, raster, solid);
   return solid;
 }
 
