@@ -1,5 +1,6 @@
 #include "packing/channel_ways.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -60,7 +61,24 @@ std::optional<Channel> ChannelWays::out_of_top(std::uint32_t lower, std::uint32_
   return Channel{lower, upper, *tube};
 }
 
-std::optional<Channel> ChannelWays::channel(std::uint32_t a, std::uint32_t b, std::size_t way) const {
+std::uint64_t ChannelWays::key_of(std::uint32_t a, std::uint32_t b, std::size_t way) const {
+  return (static_cast<std::uint64_t>(std::min(a, b)) * spheres_.size() + std::max(a, b)) * kCount + way;
+}
+
+const std::optional<Channel>& ChannelWays::channel(std::uint32_t a, std::uint32_t b, std::size_t way) {
+  const auto [place, is_new] = channels_.try_emplace(key_of(a, b, way));
+  if (is_new) place->second = find_channel(a, b, way);
+  return place->second;
+}
+
+double ChannelWays::sill(const Channel& channel, std::size_t way, Vec3d up) {
+  auto& sills = sills_[dot(up, roof_.up) > 0 ? 0 : 1];
+  const auto [place, is_new] = sills.try_emplace(key_of(channel.from, channel.to, way), 0);
+  if (is_new) place->second = sill_of(channel.tube, spheres_[channel.from], spheres_[channel.to], up);
+  return place->second;
+}
+
+std::optional<Channel> ChannelWays::find_channel(std::uint32_t a, std::uint32_t b, std::size_t way) const {
   const Vec3d up = roof_.up;
   const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
   if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
@@ -84,8 +102,7 @@ std::optional<Channel> ChannelWays::channel(std::uint32_t a, std::uint32_t b, st
 }
 
 bool ChannelWays::is_free(const Channel& channel, std::size_t way) {
-  const std::uint64_t key =
-      (static_cast<std::uint64_t>(channel.from) * spheres_.size() + channel.to) * kCount + way;
+  const std::uint64_t key = key_of(channel.from, channel.to, way);
   const auto known = free_.find(key);
   if (known != free_.end()) return known->second;
   const bool is_free = clearance_.keeps_gap_to_voids(channel.tube, channel.from, channel.to) &&

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -27,12 +28,18 @@ class ChannelWays {
   // The channel of a way, from the lower to the upper void; nullopt if it cannot open into both of them all
   // round and below their roofs, or is too long, or leans so far that its own ceiling is wider than the
   // bridge.
-  std::optional<Channel> channel(std::uint32_t a, std::uint32_t b, std::size_t way) const;
+  const std::optional<Channel>& channel(std::uint32_t a, std::uint32_t b, std::size_t way);
+
+  // The height along `up`, which is the roof's or the opposite, that liquid has to reach to pass it;
+  // remembered.
+  double sill(const Channel& channel, std::size_t way, Vec3d up);
 
   // Whether the channel of a way keeps clear of everything but other channels; remembered.
   bool is_free(const Channel& channel, std::size_t way);
 
  private:
+  std::uint64_t key_of(std::uint32_t a, std::uint32_t b, std::size_t way) const;
+  std::optional<Channel> find_channel(std::uint32_t a, std::uint32_t b, std::size_t way) const;
   Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const;
   std::optional<Channel> out_of_top(std::uint32_t lower, std::uint32_t upper) const;
 
@@ -41,7 +48,10 @@ class ChannelWays {
   double radius_;
   double longest_;
   const TubeClearance& clearance_;
-  std::unordered_map<std::uint64_t, bool> free_;  // by pair and way
+  // By pair and way; sills for print orientation and upside down.
+  std::unordered_map<std::uint64_t, bool> free_;
+  std::unordered_map<std::uint64_t, std::optional<Channel>> channels_;
+  std::array<std::unordered_map<std::uint64_t, double>, 2> sills_;
 };
 
 }  // namespace aerate

@@ -106,7 +106,7 @@ class Planner {
   void open_and_join(std::span<const Members> networks, double whole_volume);
   bool open_one(std::vector<EscapeHole> ranked, std::uint32_t network);
   bool open(const Members& members, Vec3d down, std::uint32_t network);
-  void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) const;
+  void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up);
   std::vector<Candidate> flood(Vec3d up, const std::function<void(const Channel&)>& join);
   void place(const Channel& channel);
   void take_back_channels();
@@ -399,7 +399,7 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
   }
 }
 
-void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) const {
+void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) {
   for (const std::uint32_t index : channels_of_[from]) {
     const Channel& c = plan_.channels[index];
     const double sill = sill_of(c.tube, spheres_[c.from], spheres_[c.to], up);
@@ -408,9 +408,9 @@ void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d u
   for (const std::uint32_t to : clearance_.neighbours(from)) {
     if (network_of_[to] != network_of_[from]) continue;
     for (std::size_t i = 0; i < ChannelWays::kCount; ++i) {
-      const auto c = ways_.channel(from, to, i);
+      const std::optional<Channel>& c = ways_.channel(from, to, i);
       if (!c) continue;
-      const double sill = sill_of(c->tube, spheres_[c->from], spheres_[c->to], up);
+      const double sill = ways_.sill(*c, i, up);
       queue.push({std::max(height, sill), length(c->tube.end - c->tube.start), to, from, i});
     }
   }
