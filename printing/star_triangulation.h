@@ -68,7 +68,7 @@ class StarTriangulation {
   std::optional<std::uint32_t> insert(Vec3d position, std::uint32_t near = 0) {
     if (const auto t = walk_towards(position, out_[near] / 3)) return split(*t, position);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      if (!crossed_side(t, position) && is_within(t, position)) return split(t, position);
+      if (is_within(t, position)) return split(t, position);
     }
     return std::nullopt;
   }

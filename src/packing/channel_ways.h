@@ -27,7 +27,7 @@ class ChannelWays {
 
   // The channel of a way, from the lower to the upper void; nullopt if it cannot open into both of them all
   // round and below their roofs, or is too long, or leans so far that its own ceiling is wider than the
-  // bridge.
+  // bridge. Remembered.
   const std::optional<Channel>& channel(std::uint32_t a, std::uint32_t b, std::size_t way);
 
   // The height along `up`, which is the roof's or the opposite, that liquid has to reach to pass it;

@@ -227,14 +227,19 @@ TEST_F(CarveDrained, AHoleIsNotCutWhereTheSurfaceIsNoSinglePiece) {
   EXPECT_TRUE(test::contains(test::message_of<FailureError>([this] { carve(); }), "cannot be cut"));
 }
 
+StarTriangulation template_of(const Sphere& sphere, double tolerance) {
+  BallLadder ladder;
+  const BallTemplate& ball = ladder[ladder.level_for(sphere, tolerance)];
+  StarTriangulation whole(ball.directions, ball.triangles);
+  EXPECT_TRUE(whole.connect());
+  return whole;
+}
+
 // The hull by brute force: no point is beyond the plane of any triangle, and what is open are the rims.
 TEST(OpenBall, IsTheHullLessWhatIsInsideTheRims) {
   const Sphere sphere{{3, -2, 7}, 5, SphereKind::adaptive};
-  BallLadder ladder;
   for (const double tolerance : {0.3, 0.05, 0.01}) {
-    const BallTemplate& ball = ladder[ladder.level_for(sphere, tolerance)];
-    StarTriangulation whole(ball.directions, ball.triangles);
-    ASSERT_TRUE(whole.connect());
+    const StarTriangulation whole = template_of(sphere, tolerance);
     std::vector<Opening> openings;
     for (const Vec3d direction : {Vec3d{0, 0, 1}, Vec3d{0.6, 0, -0.8}, Vec3d{-0.48, 0.6, -0.64}}) {
       const Vec3d inside = sphere.centre + Vec3d{0.4, 0.3, 0.2};
@@ -269,10 +274,7 @@ TEST(OpenBall, IsTheHullLessWhatIsInsideTheRims) {
 // axis.
 TEST(OpenBall, ARimNearTheEquatorLeavesWhatIsBeyondIt) {
   const Sphere sphere{{0, 0, 0}, 8, SphereKind::adaptive};
-  BallLadder ladder;
-  const BallTemplate& ball = ladder[ladder.level_for(sphere, 0.05)];
-  StarTriangulation whole(ball.directions, ball.triangles);
-  ASSERT_TRUE(whole.connect());
+  const StarTriangulation whole = template_of(sphere, 0.05);
   const Tube tube{{0, 0, 0}, {0, 0, 1}, 8 * std::cos(15 * std::numbers::pi / 180)};
   const std::vector<Opening> openings{
       {tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, sphere, {0, 0, 1}, 200)}};
@@ -283,10 +285,7 @@ TEST(OpenBall, ARimNearTheEquatorLeavesWhatIsBeyondIt) {
 
 TEST(OpenBall, RefusesOpeningsThatMeet) {
   const Sphere sphere{{0, 0, 0}, 5, SphereKind::adaptive};
-  BallLadder ladder;
-  const BallTemplate& ball = ladder[ladder.level_for(sphere, 0.05)];
-  StarTriangulation whole(ball.directions, ball.triangles);
-  ASSERT_TRUE(whole.connect());
+  const StarTriangulation whole = template_of(sphere, 0.05);
   std::vector<Opening> openings;
   for (const double x : {0.0, 1.0}) {
     const Tube tube{{x, 0, 0}, {x, 0, 9}, 1.2};
