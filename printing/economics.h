@@ -3,28 +3,11 @@
 #include <optional>
 #include <span>
 
-#include "core/mesh.h"
 #include "kernels/sphere.h"
+#include "printing/filament_use.h"
 #include "printing/print_settings.h"
 
 namespace aerate {
-
-// What a print takes of filament, mm3, as a model of what a slicer does (docs/economics.md). None of these
-// depends on the infill, so that one pass over the layers answers for every infill.
-struct FilamentUse {
-  double wall_mm3 = 0;       // perimeters
-  double solid_mm3 = 0;      // solid layers
-  double connected_mm3 = 0;  // what joins lines of sparse infill along walls, as these get very sparse
-  double sparse_mm3 = 0;     // the space that sparse infill stands in
-
-  double volume_mm3(const PrintSettings& settings) const;
-};
-FilamentUse operator-(const FilamentUse& a, const FilamentUse& b);
-
-// Filament for a closed mesh (outer surface and inward voids alike) that is printed upwards along z. Layer by
-// layer on a raster: O(triangles + pixels); the number of threads does not change the result.
-//   pixel: edge of a pixel, mm, where the model is not so large that it has to be coarser
-FilamentUse filament_use(const Mesh& mesh, const PrintSettings& settings, double pixel = 0.5);
 
 // What one spherical void of this radius adds, far from other voids and from walls; its sparse_mm3 is
 // negative.

@@ -8,6 +8,10 @@
 namespace aerate {
 namespace {
 
+// Layers are cut so much below their middle, in layer heights: of two faces there, the lower one counts, as
+// in PrusaSlicer.
+constexpr double kBelowMiddle = 1e-3;
+
 // The layers whose middles a triangle crosses: [first, last).
 std::pair<std::size_t, std::size_t> layers_of(const Mesh& mesh, const Triangle& triangle,
                                               const LayerRaster& raster) {
@@ -61,8 +65,9 @@ LayerRaster raster_of(const Mesh& mesh, double pixel, double layer_height, doubl
   const Vec3d lower = to_double(box.lower), size = to_double(box.upper) - lower;
   LayerRaster raster;
   raster.layer_height = layer_height;
-  raster.first_z = lower.z + layer_height / 2;
-  raster.layer_count = static_cast<std::size_t>(std::max(1.0, std::round(size.z / layer_height)));
+  raster.first_z = lower.z + (0.5 - kBelowMiddle) * layer_height;
+  raster.layer_count =
+      static_cast<std::size_t>(std::max(1.0, std::round(size.z / layer_height + kBelowMiddle)));
   raster.pixel =
       std::max(pixel, std::sqrt(size.x * size.y * static_cast<double>(raster.layer_count) / most_pixels));
   raster.count_x = static_cast<std::size_t>(std::ceil(size.x / raster.pixel)) + 2;

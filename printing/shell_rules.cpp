@@ -1,0 +1,54 @@
+#include "printing/shell_rules.h"
+
+#include <numbers>
+
+namespace aerate {
+namespace {
+
+// The slicer's.
+constexpr double kInfillOverlap = 0.25;  // of a spacing, infill into walls
+constexpr double kSkinMargin = 3.0;
+constexpr double kShellSpacing = 1.05;  // spacings that shells are measured in
+constexpr double kLeastShell = 1.0;     // of those: it opens shells by half of this,
+constexpr double kGrownAgain = 0.8;     // and grows them by this
+constexpr double kLean = 0.2;           // line widths: it opens what looks up or down by half of this
+
+// Fitted to the slicer's figures for three of the six models that they are held against.
+constexpr double kWidenedWalls = 0.4;  // spacings
+constexpr double kGyroidShare = 0.926;
+
+// Lines are printed side by side at less than their width, since their sides are round.
+double spacing_of(const PrintSettings& settings) {
+  return settings.line_width - settings.layer_height * (1 - std::numbers::pi / 4);
+}
+
+}  // namespace
+
+ShellRules shell_rules(const PrintSettings& settings) {
+  ShellRules rules;
+  rules.spacing = spacing_of(settings);
+  if (settings.perimeters > 0) {
+    rules.wall = settings.line_width / 2 + (settings.perimeters - 0.5) * rules.spacing;
+    rules.fill = rules.wall - kInfillOverlap * rules.spacing;
+    rules.widened_walls = kWidenedWalls * rules.spacing;
+  }
+  rules.lean = kLean * settings.line_width;
+  rules.skin_margin = kSkinMargin;
+  rules.shadow = kShellSpacing * rules.spacing;
+  rules.least_shell = kLeastShell * kShellSpacing * rules.spacing;
+  rules.widening = (kGrownAgain - kLeastShell / 2) * kShellSpacing * rules.spacing;
+  return rules;
+}
+
+double wall_density(const PrintSettings& settings) {
+  if (settings.perimeters == 0) return 1;
+  const ShellRules rules = shell_rules(settings);
+  return settings.perimeters * rules.spacing / rules.wall;
+}
+
+double printed_share(const PrintSettings& settings) {
+  if (settings.infill >= 1) return 1;
+  return settings.infill * (settings.pattern == InfillPattern::gyroid ? kGyroidShare : 1.0);
+}
+
+}  // namespace aerate

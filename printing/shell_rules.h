@@ -1,0 +1,33 @@
+#pragma once
+
+#include "printing/print_settings.h"
+
+namespace aerate {
+
+// Where a slicer puts walls, solid and sparse infill in a layer: PrusaSlicer 2.5's rules
+// (PrintObject::discover_vertical_shells, LayerRegion::process_external_surfaces) and the values of its 0.2
+// mm profiles, as lengths in mm for a print's settings. docs/economics.md explains them.
+struct ShellRules {
+  double spacing = 0;        // between lines that lie side by side
+  double wall = 0;           // from the contour to the inner edge of the walls
+  double fill = 0;           // from the contour to where infill begins: it overlaps the walls
+  double widened_walls = 0;  // infill narrower than this is left to the walls, which are printed wider
+  // Layers that look up or down lean if their contour moves by this much from one layer to the next.
+  double lean = 0;
+  double skin_margin = 0;  // what looks up or down is printed so much wider than it is, into the infill
+  double shadow = 0;       // and its shadow in the next layers is wider than it by this
+  double least_shell = 0;  // shells inside of the walls that are narrower are left out
+  double widening = 0;     // others reach this far into sparse infill
+};
+ShellRules shell_rules(const PrintSettings& settings);
+
+// Material in walls, over the volume from the contour to their inner edge.
+double wall_density(const PrintSettings& settings);
+
+// What is printed, by length of line and area, of the space that lines of sparse infill run through (0..1).
+double printed_share(const PrintSettings& settings);
+
+// Lines of sparse infill are joined along this share of the edge that they end at. Fitted.
+constexpr double kJoinedShare = 0.545;
+
+}  // namespace aerate

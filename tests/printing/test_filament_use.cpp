@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+#include <numbers>
+#include <tbb/global_control.h>
+
+#include "printing/filament_use.h"
+#include "printing/shell_rules.h"
+#include "tests/support/shapes.h"
+
+namespace aerate::test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+PrintSettings with_infill(double infill) {
+  PrintSettings settings;
+  settings.infill = infill;
+  return settings;
+}
+
+Mesh moved(Mesh mesh, Vec3f by) {
+  for (Vec3f& p : mesh.positions) p = p + by;
+  return mesh;
+}
+
+// A block whose sides lean inwards, by `step` from one layer of 0.2 mm to the next; its bottom is a square.
+Mesh tapered_block(float side, float height, float step) {
+  Mesh mesh = make_box({0, 0, 0}, {side, side, height});
+  const float by = step * height / 0.2F;
+  for (Vec3f& p : mesh.positions) {
+    if (p.z == 0) continue;
+    p.x += p.x == 0 ? by : -by;
+    p.y += p.y == 0 ? by : -by;
+  }
+  return mesh;
+}
+
+TEST(FilamentUse, ABlockHasWallsSkinsAndInfillOfItsOwnSize) {
+  const double side = 30;
+  const Mesh block = make_box({0, 0, 0}, {30, 30, 30});
+  PrintSettings settings = with_infill(0.2);
+  settings.pattern = InfillPattern::lines;
+  const FilamentUse use = filament_use(block, settings);
+  // Two loops at their middles, as a slicer lays them.
+  const double spacing = 0.45 - 0.2 * (1 - kPi / 4);
+  const double loops = 4 * (side - 0.45) + 4 * (side - 0.45 - 2 * spacing);
+  EXPECT_NEAR(use.wall_mm3, loops * spacing * side, 0.02 * loops * spacing * side);
+  const double inside = side - 2 * (0.225 + 1.5 * spacing) + 2 * 0.25 * spacing;
+  EXPECT_NEAR(use.solid_mm3, 9 * 0.2 * inside * inside, 0.02 * 9 * 0.2 * inside * inside);
+  // Lines of sparse infill end half a spacing inside of that, and are joined there.
+  const double lines = inside - spacing, height = side - 9 * 0.2;
+  EXPECT_NEAR(use.sparse_mm3, height * lines * lines, 0.02 * height * lines * lines);
+  EXPECT_NEAR(use.rim_mm3, height * (inside * inside - lines * lines),
+              0.1 * height * (inside * inside - lines * lines));
+  const double joints = kJoinedShare * 4 * lines * spacing * height;
+  EXPECT_NEAR(use.joined_mm3, joints, 0.1 * joints);
+  EXPECT_NEAR(use.volume_mm3(settings), use.wall_mm3 + use.solid_mm3 + use.joined_mm3 + 0.2 * use.sparse_mm3,
+              1e-6);
+  EXPECT_NEAR(use.volume_mm3(with_infill(1)), side * side * side, 0.02 * side * side * side);
+}
+
+TEST(FilamentUse, WhereABlockLiesDoesNotMatter) {
+  const Mesh block = make_box({0, 0, 0}, {30, 20, 10});
+  const PrintSettings settings = with_infill(0.3);
+  const double here = filament_use(block, settings).volume_mm3(settings);
+  const double there = filament_use(moved(block, {123.4F, -56.7F, 8.9F}), settings).volume_mm3(settings);
+  EXPECT_NEAR(there, here, 0.01 * here);
+}
+
+TEST(FilamentUse, TheNumberOfThreadsDoesNotMatter) {
+  const Mesh solid = join(make_box({0, 0, 0}, {30, 20, 20}),
+                          moved(turned_inside_out(make_uv_sphere(6, 60, 90)), {12, 10, 10}));
+  const PrintSettings settings;
+  const auto use_with = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return filament_use(solid, settings);
+  };
+  const FilamentUse one = use_with(1), four = use_with(4);
+  EXPECT_EQ(one.wall_mm3, four.wall_mm3);
+  EXPECT_EQ(one.solid_mm3, four.solid_mm3);
+  EXPECT_EQ(one.joined_mm3, four.joined_mm3);
+  EXPECT_EQ(one.sparse_mm3, four.sparse_mm3);
+}
+
+// A face at the middle of a layer belongs to what is below it, as in PrusaSlicer 2.5 (measured with boxes of
+// 7.7, 10.1, 12.3, 16.5 and 20.9 mm).
+TEST(FilamentUse, AFaceAtTheMiddleOfALayerCountsAsItsTop) {
+  for (const float height : {7.7F, 10.1F, 16.5F}) {
+    SCOPED_TRACE(height);
+    const PrintSettings settings = with_infill(1);
+    const double printed = filament_use(make_box({0, 0, 0}, {20, 20, height}), settings).volume_mm3(settings);
+    const double higher =
+        filament_use(make_box({0, 0, 0}, {20, 20, height + 0.05F}), settings).volume_mm3(settings);
+    EXPECT_NEAR(printed, higher, 1e-3 * printed);
+    const Mesh plate = join(make_box({5, 5, 0}, {15, 15, 25}), make_box({0, 0, 0}, {20, 20, height}));
+    const Mesh thicker =
+        join(make_box({5, 5, 0}, {15, 15, 25}), make_box({0, 0, 0}, {20, 20, height + 0.05F}));
+    EXPECT_NEAR(filament_use(plate, settings).volume_mm3(settings),
+                filament_use(thicker, settings).volume_mm3(settings), 1e-3 * printed);
+  }
+}
+
+TEST(FilamentUse, WhatIsTooNarrowForInfillIsWall) {
+  const PrintSettings settings = with_infill(0.2);
+  const ShellRules rules = shell_rules(settings);
+  const auto use_of_plate = [&](double thickness) {
+    return filament_use(make_box({0, 0, 0}, {40, static_cast<float>(thickness), 20}), settings);
+  };
+  const FilamentUse walls = use_of_plate(2 * rules.wall + 0.5 * rules.widened_walls);
+  EXPECT_LT(walls.solid_mm3 + walls.sparse_mm3 + walls.rim_mm3, 0.01 * walls.wall_mm3);
+  const FilamentUse filled = use_of_plate(2 * rules.wall + 3 * rules.widened_walls);
+  EXPECT_GT(filled.solid_mm3 + filled.sparse_mm3 + filled.rim_mm3, 0.1 * filled.wall_mm3);
+}
+
+// Four layers further down, a wall that leans has moved by four steps: a shell of at least 1.05 spacings is
+// printed there, a narrower one is not.
+TEST(FilamentUse, ShellsAlongLeaningWallsHaveALeastWidth) {
+  PrintSettings settings = with_infill(0.2);
+  settings.bottom_layers = 0;  // which would look the other way
+  const ShellRules rules = shell_rules(settings);
+  const double side = 60, height = 20, top_height = settings.top_layers * settings.layer_height;
+  for (const double width : {0.8 * rules.least_shell, 1.2 * rules.least_shell}) {
+    SCOPED_TRACE(width);
+    const double step = width / (settings.top_layers - 1);
+    const double solid = filament_use(tapered_block(60, 20, static_cast<float>(step)), settings).solid_mm3;
+    const double leant = step * height / settings.layer_height;  // of each side, from bottom to top
+    const double upper = side - 2 * leant - 2 * rules.fill;
+    const double top = top_height * upper * upper;
+    const double printed = width > rules.least_shell ? width + rules.widening : 0;
+    const double shells = 4 * (side - leant - 2 * rules.fill - printed) * printed * (height - top_height);
+    EXPECT_NEAR(solid, top + shells, 0.08 * top + 0.1 * shells);
+  }
+}
+
+// Steps of a gentle slope that leave infill free are skin, and that is 3 mm wider than what is free; a slope
+// a little steeper leaves none free.
+TEST(FilamentUse, AGentleSlopeThatLeavesInfillFreeIsSkin) {
+  PrintSettings settings = with_infill(0.2);
+  settings.top_layers = 1;
+  settings.bottom_layers = 0;
+  const ShellRules rules = shell_rules(settings);
+  const auto solid_of = [&](double step) {
+    return filament_use(tapered_block(80, 6, static_cast<float>(step)), settings).solid_mm3;
+  };
+  const double none = solid_of(rules.fill - 0.05), skinned = solid_of(rules.fill + 0.05);
+  const double skin = 29 * 0.2 * 4 * 55 * rules.skin_margin;
+  EXPECT_NEAR(skinned - none, skin, 0.2 * skin);
+}
+
+TEST(FilamentUse, NothingTakesNothing) {
+  EXPECT_EQ(filament_use(Mesh{}, PrintSettings{}).volume_mm3(PrintSettings{}), 0);
+}
+
+}  // namespace
+}  // namespace aerate::test
