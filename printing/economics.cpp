@@ -14,16 +14,18 @@ namespace {
 // Fitted.
 constexpr double kCompanyShare = 0.8;
 
-// For the time (PrusaSlicer's default speeds, mm/s): straight infill, walls, and walls of less than this
-// radius.
-constexpr double kInfillSpeed = 60;
-constexpr double kWallSpeed = 45;
-constexpr double kSmallWallSpeed = 15;
+// For the time: speeds, mm/s, that PrusaSlicer's estimates come to with its default speeds and accelerations,
+// fitted to three models (docs/economics.md). Gyroid is slow since it turns all the time.
+constexpr double kStraightInfillSpeed = 60;
+constexpr double kGyroidSpeed = 31;
+constexpr double kWallSpeed = 20;
+constexpr double kVoidWallSpeed = 16;
+constexpr double kSmallVoidWallSpeed = 9.5;  // below this radius:
 constexpr double kSmallWallRadius = 6.5;
 // And for the way to a contour of its own, its seam and retraction, s.
-constexpr double kSecondsPerContour = 1;
+constexpr double kSecondsPerContour = 0.25;
 // Differences of the time below this share are not told.
-constexpr double kSameTime = 0.03;
+constexpr double kSameTime = 0.05;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -113,11 +115,15 @@ std::optional<double> break_even_infill(const FilamentUse& difference, const Pri
 TimeChange time_change(const FilamentUse& whole, const FilamentUse& hollow, std::span<const Sphere> voids,
                        const PrintSettings& settings) {
   const double section = shell_rules(settings).spacing * settings.layer_height;
+  const bool waves = settings.infill < 1 && settings.pattern == InfillPattern::gyroid;
+  const double sparse_speed = waves ? kGyroidSpeed : kStraightInfillSpeed;
   const auto infill_seconds = [&](const FilamentUse& use) {
-    return (use.volume_mm3(settings) - use.wall_mm3) / section / kInfillSpeed;
+    const double sparse = use.volume_mm3(settings) - use.wall_mm3 - use.solid_mm3;
+    return (use.solid_mm3 / kStraightInfillSpeed + sparse / sparse_speed) / section;
   };
-  const double before = infill_seconds(whole) + whole.wall_mm3 / section / kWallSpeed;
-  double after = infill_seconds(hollow) + whole.wall_mm3 / section / kWallSpeed;
+  const double walls = whole.wall_mm3 / section / kWallSpeed;
+  const double before = infill_seconds(whole) + walls;
+  double after = infill_seconds(hollow) + walls;
   // Walls round voids: what there is in all, at the speeds of those that each void alone would have.
   double length = 0, seconds = 0;
   for (const Sphere& sphere : voids) {
@@ -125,9 +131,9 @@ TimeChange time_change(const FilamentUse& whole, const FilamentUse& hollow, std:
     for (long k = -layers; k < layers; ++k) {
       const double z = (static_cast<double>(k) + 0.5) * settings.layer_height;
       const double radius = std::sqrt(std::max(0.0, sphere.radius * sphere.radius - z * z));
-      const double walls = settings.perimeters * 2 * kPi * radius;
-      length += walls;
-      seconds += walls / (radius < kSmallWallRadius ? kSmallWallSpeed : kWallSpeed);
+      const double round = settings.perimeters * 2 * kPi * radius;
+      length += round;
+      seconds += round / (radius < kSmallWallRadius ? kSmallVoidWallSpeed : kVoidWallSpeed);
       after += kSecondsPerContour;
     }
   }

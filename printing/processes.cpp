@@ -53,7 +53,7 @@ Process fdm() {
        {Limit::gap, {kDefaultLimits.gap, own("two extrusion lines, the least that separates two voids")}},
        {Limit::min_radius, {kDefaultLimits.min_radius, "1 mm3: slicers drop smaller shells (PrusaSlicer)"}},
        {Limit::max_radius,
-        {kDefaultLimits.max_radius, own("ceilings get roofs; at 15 % infill voids pay from about 20 mm on")}},
+        {kDefaultLimits.max_radius, own("ceilings get roofs; at 15 % infill voids pay from about 18 mm on")}},
        {Limit::least_wall, {0.4, own("the nozzle's diameter")}},
        {Limit::least_gap, {0.45, own("one extrusion line of a 0.4 mm nozzle")}},
        {Limit::overhang, {45, "Hubs"}},

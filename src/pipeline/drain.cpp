@@ -45,11 +45,19 @@ std::string reasons(const UndrainedVoids& dropped, const DrainageRequest& reques
   return text;
 }
 
+// What is worth trying, where many voids have no way out for the holes' width.
+std::string what_would_reach_them(const UndrainedVoids& dropped, const DrainageRequest& request) {
+  if (2 * dropped.unopened < dropped.count() || request.escape_holes.size() >= 2) return {};
+  return fmt::format("; holes narrower than {:g} mm (--hole-diameter) find more places",
+                     2 * request.hole_radius);
+}
+
 void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Monitor& monitor) {
   const UndrainedVoids& dropped = drainage.dropped;
   if (dropped.count() > 0)
-    monitor.notice(fmt::format("{} of {} voids ({:.1f} mm3) cannot be drained and are not made: {}",
-                               dropped.count(), packed, dropped.volume, reasons(dropped, drainage.request)));
+    monitor.notice(fmt::format("{} of {} voids ({:.1f} mm3) cannot be drained and are not made: {}{}",
+                               dropped.count(), packed, dropped.volume, reasons(dropped, drainage.request),
+                               what_would_reach_them(dropped, drainage.request)));
   const TrappedPools& pools = drainage.plan.pools;
   if (pools.after_both > kPoolsAimedAt * pools.total)
     monitor.notice(fmt::format(

@@ -41,10 +41,10 @@ void expect_refused(const Job& job, const std::vector<std::string>& arguments, i
 TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
   const Job job;
   expect_refused(job, {"--infill", "15%"}, kNothing,
-                 {"15 % infill", "above a radius of 19", "the largest that fits has radius 13.8 mm",
+                 {"15 % infill", "above a radius of 18", "the largest that fits has radius 13.8 mm",
                   "voids of 14 mm save above", "modifier", "--force"});
   expect_refused(job, {"--infill", "15%", "--max-radius", "3.5"}, kNothing,
-                 {"15 % infill", "above a radius of 19", "3.5 mm (--max-radius)",
+                 {"15 % infill", "above a radius of 18", "3.5 mm (--max-radius)",
                   "voids of 3.5 mm save above", "modifier", "--force"});
 }
 
