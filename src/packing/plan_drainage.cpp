@@ -56,6 +56,20 @@ std::string shortened(double value) {
   return text;
 }
 
+// Gives holes one by one, the best first; nullopt when there are no more.
+using HoleSource = std::function<std::optional<EscapeHole>()>;
+
+HoleSource in_order(std::span<const EscapeHole> holes) {
+  return [holes]() mutable {
+    std::optional<EscapeHole> next;
+    if (!holes.empty()) {
+      next = holes.front();
+      holes = holes.subspan(1);
+    }
+    return next;
+  };
+}
+
 class Planner {
  public:
   Planner(const DrainableModel& model, const Packing& packing, const DrainageRequest& request,
@@ -104,7 +118,7 @@ class Planner {
   void drop_tubes_of_left_out();
   bool open_network(const Members& members, std::uint32_t network);
   void open_and_join(std::span<const Members> networks, double whole_volume);
-  bool open_one(std::vector<EscapeHole> ranked, std::uint32_t network);
+  bool open_one(const HoleSource& next_best, std::uint32_t network);
   bool open(const Members& members, Vec3d down, std::uint32_t network);
   void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up);
   std::vector<Candidate> flood(Vec3d up, const std::function<void(const Channel&)>& join);
@@ -213,7 +227,7 @@ std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) 
     const std::vector<EscapeHole> found = places_.leading_to(place, all);
     std::vector<EscapeHole> roomy = found;
     std::erase_if(roomy, [this](const EscapeHole& hole) { return !leaves_room_for_channel(hole); });
-    if (!open_one(std::move(roomy), 0) && !open_one(found, 0)) {
+    if (!open_one(in_order(roomy), 0) && !open_one(in_order(found), 0)) {
       throw UsageError("no straight hole leads from (" + std::to_string(place.x) + ", " +
                            std::to_string(place.y) + ", " + std::to_string(place.z) +
                            ") mm to a void that channels join to others",
@@ -254,9 +268,10 @@ bool Planner::leaves_room_for_channel(const EscapeHole& hole) {
   return found;
 }
 
-bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
+bool Planner::open_one(const HoleSource& next_best, std::uint32_t network) {
   int cuts = 0;
-  for (EscapeHole& hole : ranked) {
+  while (auto found = next_best()) {
+    EscapeHole& hole = *found;
     monitor_.check_interrupted();
     if (!places_.is_sound(hole)) continue;
     const Vec3d end = hole.tube.end;
@@ -277,8 +292,10 @@ bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
 
 // Opens some of the voids where liquid that runs `down` leaves them.
 bool Planner::open(const Members& members, Vec3d down, std::uint32_t network) {
-  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(),
-                     [&](double share) { return open_one(places_.ranked(members, down, share), network); });
+  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(), [&](double share) {
+    HolePlaces::Ranking ranking = places_.ranked(members, down, share);
+    return open_one([&] { return ranking.next(); }, network);
+  });
 }
 
 std::ptrdiff_t Planner::holes_of(std::uint32_t network) const {
