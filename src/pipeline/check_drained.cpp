@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tbb/parallel_for.h>
 #include <vector>
 
 #include "core/segment_distance.h"
@@ -173,16 +174,18 @@ std::size_t count_sealed(const Mesh& read_back, const EdgeUses& uses, const Expe
 }
 
 void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
-  for (std::size_t i = 0; i < plan.holes.size(); ++i) {
+  std::vector<SelfIntersections> crossings(plan.holes.size());
+  tbb::parallel_for(std::size_t{0}, plan.holes.size(), [&](std::size_t i) {
     const Tube& tube = plan.holes[i].tube;
-    const Mesh part =
-        part_of(read_back, triangles_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
-    const SelfIntersections found = find_self_intersections(part);
-    if (found.pair_count == 0) continue;
-    const Vec3d place = found.places.front();
+    crossings[i] = find_self_intersections(
+        part_of(read_back, triangles_near(read_back, cut_of(tube), tube.radius + kNeighbourhood)));
+  });
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    if (crossings[i].pair_count == 0) continue;
+    const Vec3d place = crossings[i].places.front();
     fail_check(
         "{} pairs of triangles intersect at escape hole {}, the first near ({:.3f}, {:.3f}, {:.3f}) mm",
-        found.pair_count, i, place.x, place.y, place.z);
+        crossings[i].pair_count, i, place.x, place.y, place.z);
   }
 }
 
