@@ -235,7 +235,9 @@ std::optional<HolePlaces::Place> HolePlaces::place_of(std::uint32_t from, Vec3d 
       !is_bridged(*tube, limits_.roof)) {
     return std::nullopt;
   }
-  return Place{.hole = {from, *tube, 0}, .sill = opening_floor(*tube, TubeEnd::start, ball, -down)};
+  return Place{.hole = {from, *tube, 0},
+               .sill = opening_floor(*tube, TubeEnd::start, ball, -down),
+               .length = limits_.wall};
 }
 
 // Follows the tube to the surface.

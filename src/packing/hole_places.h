@@ -75,12 +75,14 @@ class HolePlaces {
   bool is_sound(const EscapeHole& hole);
 
  private:
+  static constexpr double kLeastShowing = 0.139;  // of places that face down and backwards
+
   // Before it is looked at, `sill`, `showing` and `length` are what they are at least.
   struct Place {
     EscapeHole hole;
-    double sill;         // that liquid has to reach; infinite if the surface is too far away
-    double showing = 0;  // 0 (where it does not show) to 1
-    double length = 0;   // of the tube
+    double sill;                     // that liquid has to reach; infinite if the surface is too far away
+    double showing = kLeastShowing;  // to 1
+    double length;                   // of the tube
     bool is_looked_at = false;
   };
   using PlacesByBall = std::vector<std::optional<std::vector<Place>>>;
