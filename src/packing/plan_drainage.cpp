@@ -83,7 +83,7 @@ class Planner {
         clearance_(model.surface, spheres_, packing.limits,
                    std::max(longest_, longest_hole(request, packing.limits)),
                    std::max(request.channel_radius, request.hole_radius)),
-        ways_(spheres_, roof_, request.channel_radius, longest_, clearance_),
+        ways_(spheres_, roof_, request.channel_radius, longest_, clearance_, monitor),
         places_(model.outward, spheres_, packing.limits, request, clearance_) {
     plan_.roof = roof_;
   }
@@ -105,13 +105,14 @@ class Planner {
   };
   using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
   using UncutPlace = std::tuple<std::uint32_t, double, double, double>;
-  static constexpr std::size_t kExisting = ChannelWays::kCount;
+  static constexpr std::size_t kExisting = std::numeric_limits<std::size_t>::max();
 
   double largest_radius() const;
   double volume_of(const Members& members) const;
   std::vector<Members> networks();
   std::vector<Members> asked_for(std::vector<Members> networks);
   bool has_low_hole(const Members& members, std::uint32_t network) const;
+  bool is_open(std::size_t way);
   bool leaves_room_for_channel(const EscapeHole& hole);
   std::ptrdiff_t holes_of(std::uint32_t network) const;
   void leave_out(std::uint32_t network);
@@ -164,40 +165,36 @@ double Planner::volume_of(const Members& members) const {
 
 // Sets of voids that channels can join, by falling volume; voids that are too narrow are counted.
 std::vector<Planner::Members> Planner::networks() {
+  std::vector<bool> is_wide(spheres_.size());
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    is_wide[i] = request_.channel_radius <= kWidestTubeShare * spheres_[i].radius;
+    if (is_wide[i]) continue;
+    ++dropped_.narrow;
+    dropped_.volume += volume_of({i});
+  }
   struct Pair {
     double gap;
-    std::uint32_t a, b;
+    std::size_t first, last;  // of the ways between the two
   };
-  std::vector<bool> is_wide(spheres_.size());
-  for (std::size_t i = 0; i < spheres_.size(); ++i)
-    is_wide[i] = request_.channel_radius <= kWidestTubeShare * spheres_[i].radius;
   std::vector<Pair> pairs;
-  for (std::uint32_t a = 0; a < spheres_.size(); ++a) {
-    if (!is_wide[a]) {
-      ++dropped_.narrow;
-      dropped_.volume += volume_of({a});
-      continue;
-    }
-    for (const std::uint32_t b : clearance_.neighbours(a)) {
-      if (b > a && is_wide[b])
-        pairs.push_back(
-            {length(spheres_[a].centre - spheres_[b].centre) - spheres_[a].radius - spheres_[b].radius, a,
-             b});
-    }
+  for (std::size_t first = 0, last = 0; first < ways_.size(); first = last) {
+    const std::uint32_t from = ways_[first].channel.from, to = ways_[first].channel.to;
+    while (last < ways_.size() && ways_[last].channel.from == from && ways_[last].channel.to == to) ++last;
+    const double apart = length(spheres_[from].centre - spheres_[to].centre);
+    if (is_wide[from] && is_wide[to])
+      pairs.push_back({apart - spheres_[from].radius - spheres_[to].radius, first, last});
   }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
-    return std::tie(p.gap, p.a, p.b) < std::tie(q.gap, q.a, q.b);
-  });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& p, const Pair& q) { return std::tie(p.gap, p.first) < std::tie(q.gap, q.first); });
   DisjointSets sets(spheres_.size());
   for (const Pair& pair : pairs) {
-    if (sets.root(pair.a) == sets.root(pair.b)) continue;
+    const std::uint32_t from = ways_[pair.first].channel.from, to = ways_[pair.first].channel.to;
+    if (sets.root(from) == sets.root(to)) continue;
     monitor_.check_interrupted();
-    for (std::size_t i = 0; i < ChannelWays::kCount; ++i) {
-      const auto found = ways_.channel(pair.a, pair.b, i);
-      if (found && ways_.is_free(*found, i)) {
-        sets.join(pair.a, pair.b);
-        break;
-      }
+    for (std::size_t way = pair.first; way < pair.last; ++way) {
+      if (!ways_.is_free(way)) continue;
+      sets.join(from, to);
+      break;
     }
   }
   std::vector<Members> by_root(spheres_.size());
@@ -252,18 +249,18 @@ std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) 
   return reached;
 }
 
+// Can the channel of a way still be placed?
+bool Planner::is_open(std::size_t way) {
+  const Channel& channel = ways_[way].channel;
+  return ways_.is_free(way) && clearance_.keeps_gap_to_tubes(channel.tube, channel.from, channel.to);
+}
+
 // Can a channel still lead from the hole's void to a neighbour?
 bool Planner::leaves_room_for_channel(const EscapeHole& hole) {
   clearance_.place(hole.tube, hole.from, hole.from);
-  bool found = false;
-  for (const std::uint32_t to : clearance_.neighbours(hole.from)) {
-    for (std::size_t i = 0; i < ChannelWays::kCount && !found; ++i) {
-      const auto channel = ways_.channel(hole.from, to, i);
-      found = channel && ways_.is_free(*channel, i) &&
-              clearance_.keeps_gap_to_tubes(channel->tube, channel->from, channel->to);
-    }
-    if (found) break;
-  }
+  const std::span<const std::uint32_t> ways = ways_.of(hole.from);
+  const bool found =
+      std::any_of(ways.begin(), ways.end(), [this](std::uint32_t way) { return is_open(way); });
   clearance_.take_back_last();
   return found;
 }
@@ -422,14 +419,13 @@ void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d u
     const double sill = sill_of(c.tube, spheres_[c.from], spheres_[c.to], up);
     queue.push({std::max(height, sill), 0, c.from == from ? c.to : c.from, from, kExisting});
   }
-  for (const std::uint32_t to : clearance_.neighbours(from)) {
+  const std::size_t orientation = dot(up, roof_.up) > 0 ? 0 : 1;
+  for (const std::uint32_t index : ways_.of(from)) {
+    const ChannelWay& way = ways_[index];
+    const std::uint32_t to = way.other_than(from);
     if (network_of_[to] != network_of_[from]) continue;
-    for (std::size_t i = 0; i < ChannelWays::kCount; ++i) {
-      const std::optional<Channel>& c = ways_.channel(from, to, i);
-      if (!c) continue;
-      const double sill = ways_.sill(*c, i, up);
-      queue.push({std::max(height, sill), length(c->tube.end - c->tube.start), to, from, i});
-    }
+    const Tube& tube = way.channel.tube;
+    queue.push({std::max(height, way.sills[orientation]), length(tube.end - tube.start), to, from, index});
   }
 }
 
@@ -451,13 +447,9 @@ std::vector<Planner::Candidate> Planner::flood(Vec3d up, const std::function<voi
     queue.pop();
     if (ways[next.to].to != kOutside) continue;
     if (next.way != kExisting) {
-      const auto found = ways_.channel(next.from, next.to, next.way);
-      if (!ways_.is_free(*found, next.way) ||
-          !clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) {
-        continue;
-      }
+      if (!is_open(next.way)) continue;
       monitor_.check_interrupted();
-      join(*found);
+      join(ways_[next.way].channel);
     }
     ways[next.to] = next;
     push_ways(queue, next.to, next.height, up);
@@ -533,8 +525,7 @@ void Planner::empty_pools() {
   }
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
     if (!is_on_way[i] || ways[i].way == kExisting) continue;
-    const auto found = ways_.channel(ways[i].from, i, ways[i].way);
-    if (clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) place(*found);
+    if (is_open(ways[i].way)) place(ways_[ways[i].way].channel);
   }
   // Not worth it: back to the tree.
   if (pools_now().after_both > kLeastGain * before) plan_.channels.resize(tree_size);
