@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <queue>
 #include <set>
 #include <string>
 #include <tuple>
@@ -15,6 +14,7 @@
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "packing/channel_ways.h"
+#include "packing/flood.h"
 #include "packing/hole_places.h"
 #include "packing/pools.h"
 #include "packing/tube_clearance.h"
@@ -93,19 +93,7 @@ class Planner {
 
  private:
   using Members = std::vector<std::uint32_t>;
-  struct Candidate {
-    double height;  // that liquid has to reach
-    double length;
-    std::uint32_t to, from;
-    std::size_t way;
-    friend bool operator>(const Candidate& a, const Candidate& b) {
-      return std::tie(a.height, a.length, a.to, a.from, a.way) >
-             std::tie(b.height, b.length, b.to, b.from, b.way);
-    }
-  };
-  using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
   using UncutPlace = std::tuple<std::uint32_t, double, double, double>;
-  static constexpr std::size_t kExisting = std::numeric_limits<std::size_t>::max();
 
   double largest_radius() const;
   double volume_of(const Members& members) const;
@@ -121,8 +109,7 @@ class Planner {
   void open_and_join(std::span<const Members> networks, double whole_volume);
   bool open_one(const HoleSource& next_best, std::uint32_t network);
   bool open(const Members& members, Vec3d down, std::uint32_t network);
-  void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up);
-  std::vector<Candidate> flood(Vec3d up, const std::function<void(const Channel&)>& join);
+  std::vector<FloodStep> flooded(Vec3d up, const std::function<void(const Channel&)>& join);
   void place(const Channel& channel);
   void take_back_channels();
   std::vector<std::pair<double, Members>> upright_pools() const;
@@ -147,8 +134,7 @@ class Planner {
   UndrainedVoids dropped_;
   std::vector<std::uint32_t> network_of_;
   std::vector<std::uint32_t> asked_for_;  // voids with holes that were asked for
-  std::vector<std::vector<std::uint32_t>> channels_of_;
-  std::set<UncutPlace> uncut_;  // where the surface is known not to be cut well
+  std::set<UncutPlace> uncut_;            // where the surface is known not to be cut well
 };
 
 double Planner::largest_radius() const {
@@ -331,11 +317,6 @@ void Planner::drop_tubes_of_left_out() {
   const auto is_left_out = [this](std::uint32_t i) { return network_of_[i] == kOutside; };
   std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return is_left_out(hole.from); });
   std::erase_if(plan_.channels, [&](const Channel& c) { return is_left_out(c.from) || is_left_out(c.to); });
-  for (std::vector<std::uint32_t>& channels : channels_of_) channels.clear();
-  for (std::uint32_t index = 0; index < plan_.channels.size(); ++index) {
-    channels_of_[plan_.channels[index].from].push_back(index);
-    channels_of_[plan_.channels[index].to].push_back(index);
-  }
 }
 
 // Opens a network below and above, before channels take the room for it: at balls from which most of it can
@@ -349,7 +330,7 @@ bool Planner::open_network(const Members& members, std::uint32_t network) {
     const std::size_t before = plan_.holes.size();
     if (!is_asked_for_below && !open(candidates, -roof_.up, network)) break;
     if (holes_of(network) < 2) open(candidates, roof_.up, network);
-    const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
+    const std::vector<FloodStep> ways = flooded(roof_.up, [this](const Channel& channel) { place(channel); });
     take_back_channels();
     Members reached;
     for (const std::uint32_t i : members) {
@@ -389,7 +370,7 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
     const bool is_worth_it = holes_of(n) > 0 || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
     if (!is_worth_it || !open_network(networks[n], n)) leave_out(n);
   }
-  const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
+  const std::vector<FloodStep> ways = flooded(roof_.up, [this](const Channel& channel) { place(channel); });
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
     Members reached;
     for (const std::uint32_t i : networks[n]) {
@@ -413,64 +394,24 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
   }
 }
 
-void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) {
-  for (const std::uint32_t index : channels_of_[from]) {
-    const Channel& c = plan_.channels[index];
-    const double sill = sill_of(c.tube, spheres_[c.from], spheres_[c.to], up);
-    queue.push({std::max(height, sill), 0, c.from == from ? c.to : c.from, from, kExisting});
-  }
-  const std::size_t orientation = dot(up, roof_.up) > 0 ? 0 : 1;
-  for (const std::uint32_t index : ways_.of(from)) {
-    const ChannelWay& way = ways_[index];
-    const std::uint32_t to = way.other_than(from);
-    if (network_of_[to] != network_of_[from]) continue;
-    const Tube& tube = way.channel.tube;
-    queue.push({std::max(height, way.sills[orientation]), length(tube.end - tube.start), to, from, index});
-  }
-}
-
-// Finds for each void that can be reached from the lowest hole of its network the way along which its liquid
-// has to rise least to run out, `up` being against gravity. `join` is called for each, in the order of that
-// height, if its last channel is not there yet.
-std::vector<Planner::Candidate> Planner::flood(Vec3d up, const std::function<void(const Channel&)>& join) {
-  std::map<std::uint32_t, const EscapeHole*> roots;
-  for (const EscapeHole& hole : plan_.holes) {
-    const EscapeHole*& root = roots[hole.network];
-    if (root == nullptr || dot(hole.tube.end, up) < dot(root->tube.end, up)) root = &hole;
-  }
-  Queue queue;
-  for (const auto& [network, root] : roots)
-    queue.push({sill_of_hole(*root, spheres_[root->from], up), 0, root->from, kOutside, kExisting});
-  std::vector<Candidate> ways(spheres_.size(), Candidate{kInfinity, 0, kOutside, kOutside, kExisting});
-  while (!queue.empty()) {
-    const Candidate next = queue.top();
-    queue.pop();
-    if (ways[next.to].to != kOutside) continue;
-    if (next.way != kExisting) {
-      if (!is_open(next.way)) continue;
-      monitor_.check_interrupted();
-      join(ways_[next.way].channel);
-    }
-    ways[next.to] = next;
-    push_ways(queue, next.to, next.height, up);
-  }
-  return ways;
+// Floods all networks, along channels that are there and those that can still be placed. `join` is called for
+// each of the latter that is the last to a void.
+std::vector<FloodStep> Planner::flooded(Vec3d up, const std::function<void(const Channel&)>& join) {
+  return flood({spheres_, network_of_, plan_, ways_}, up, [&](std::size_t way) {
+    if (!is_open(way)) return false;
+    monitor_.check_interrupted();
+    join(ways_[way].channel);
+    return true;
+  });
 }
 
 void Planner::place(const Channel& channel) {
   clearance_.place(channel.tube, channel.from, channel.to);
-  const auto index = static_cast<std::uint32_t>(plan_.channels.size());
   plan_.channels.push_back(channel);
-  channels_of_[channel.from].push_back(index);
-  channels_of_[channel.to].push_back(index);
 }
 
 void Planner::take_back_channels() {
-  for (; !plan_.channels.empty(); plan_.channels.pop_back()) {
-    channels_of_[plan_.channels.back().from].pop_back();
-    channels_of_[plan_.channels.back().to].pop_back();
-    clearance_.take_back_last();
-  }
+  for (; !plan_.channels.empty(); plan_.channels.pop_back()) clearance_.take_back_last();
 }
 
 // The members of each pool in print orientation, and its volume, the largest first.
@@ -513,7 +454,7 @@ void Planner::empty_pools() {
   const std::size_t tree_size = plan_.channels.size();
   const double before = pools_now().after_both;
   const SpillHeights upright = spill_heights(spheres_, plan_, roof_.up);
-  const std::vector<Candidate> ways = flood(-roof_.up, [](const Channel&) {});
+  const std::vector<FloodStep> ways = flooded(-roof_.up, [](const Channel&) {});
   std::vector<bool> is_on_way(spheres_.size(), false);
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
     if (network_of_[i] == kOutside || upright.height[i] == kInfinity) continue;
@@ -524,7 +465,7 @@ void Planner::empty_pools() {
       is_on_way[at] = true;
   }
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
-    if (!is_on_way[i] || ways[i].way == kExisting) continue;
+    if (!is_on_way[i] || ways[i].way == kExistingChannel) continue;
     if (is_open(ways[i].way)) place(ways_[ways[i].way].channel);
   }
   // Not worth it: back to the tree.
@@ -619,7 +560,6 @@ PlannedDrainage Planner::run() {
   for (const Members& members : found) whole += volume_of(members);
   found = asked_for(std::move(found));
   network_of_.assign(spheres_.size(), kOutside);
-  channels_of_.resize(spheres_.size());
   open_and_join(found, whole);
   if (plan_.network_count == 0) {
     throw NothingToRemoveError(
