@@ -112,12 +112,10 @@ class Planner {
   std::vector<FloodStep> flooded(Vec3d up, const std::function<void(const Channel&)>& join);
   void place(const Channel& channel);
   void take_back_channels();
-  std::vector<std::pair<double, Members>> upright_pools() const;
   void open_pools(double whole_volume);
   void empty_pools();
   TrappedPools pools_now() const { return compacted().plan.pools; }
   void leave_out_pools();
-  void leave_out_branch(std::uint32_t root, const SpillHeights& spills);
   bool regroup();
   PlannedDrainage compacted() const;
 
@@ -414,34 +412,14 @@ void Planner::take_back_channels() {
   for (; !plan_.channels.empty(); plan_.channels.pop_back()) clearance_.take_back_last();
 }
 
-// The members of each pool in print orientation, and its volume, the largest first.
-std::vector<std::pair<double, Planner::Members>> Planner::upright_pools() const {
-  const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
-  std::vector<std::uint32_t> pool_of(spheres_.size(), kOutside);
-  std::map<std::uint32_t, std::pair<double, Members>> pools;
-  for (const std::uint32_t i : spills.order) {
-    const std::uint32_t next = spills.towards[i];
-    pool_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? pool_of[next] : i;
-    auto& [volume, members] = pools[pool_of[i]];
-    volume += volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
-    members.push_back(i);
-  }
-  std::vector<std::pair<double, Members>> sorted;
-  sorted.reserve(pools.size());
-  for (auto& [root, pool] : pools) sorted.push_back(std::move(pool));
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  return sorted;
-}
-
 // Opens the largest pools below, until little stays.
 void Planner::open_pools(double whole_volume) {
   for (int more = 0; more < kMostMoreHoles; ++more) {
     if (pools_now().after_both <= kPoolsAimedAt * whole_volume) return;
     bool opened = false;
-    for (const auto& [volume, members] : upright_pools()) {
-      if (volume < kPoolWorthHole * whole_volume) return;
-      opened = open(members, -roof_.up, network_of_[members.front()]);
+    for (const Pool& pool : upright_pools(spheres_, plan_)) {
+      if (pool.volume < kPoolWorthHole * whole_volume) return;
+      opened = open(pool.voids, -roof_.up, network_of_[pool.voids.front()]);
       if (opened) break;
     }
     if (!opened) return;
@@ -472,53 +450,21 @@ void Planner::empty_pools() {
   if (pools_now().after_both > kLeastGain * before) plan_.channels.resize(tree_size);
 }
 
-// Branches of which the largest share stays full are not made, until little stays. A branch is a void with
-// all that drains through it; those with an escape hole go last, and with one that was asked for never.
+// Branches of which the largest share stays full are not made, until little stays.
 void Planner::leave_out_pools() {
   for (std::size_t round = 0; round < spheres_.size(); ++round) {
     const TrappedPools pools = pools_now();
     if (pools.after_both <= kPoolsAimedAt * pools.total) return;
     const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
-    std::vector<double> whole(spheres_.size(), 0), full(spheres_.size(), 0);
-    for (const std::uint32_t i : spills.order) {
-      whole[i] = volume_of({i});
-      full[i] = volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
-    }
-    std::vector<bool> has_hole(spheres_.size(), false), is_asked_for(spheres_.size(), false);
-    for (const EscapeHole& hole : plan_.holes) has_hole[hole.from] = true;
-    for (const std::uint32_t i : asked_for_) is_asked_for[i] = true;
-    std::array<std::uint32_t, 2> worst{kOutside, kOutside};  // without a hole, and with one
-    std::array<double, 2> most{kPoolsAimedAt, kPoolsAimedAt};
-    for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
-      const std::uint32_t i = *at, next = spills.towards[*at];
-      const std::size_t kind = has_hole[i] ? 1 : 0;
-      if (!is_asked_for[i] && full[i] > most[kind] * whole[i]) {
-        most[kind] = full[i] / whole[i];
-        worst[kind] = i;
-      }
-      if (next == kOutside) continue;
-      whole[next] += whole[i];
-      full[next] += full[i];
-      has_hole[next] = has_hole[next] || has_hole[i];
-      is_asked_for[next] = is_asked_for[next] || is_asked_for[i];
-    }
-    const std::uint32_t chosen = worst[0] != kOutside ? worst[0] : worst[1];
+    const std::uint32_t chosen = fullest_branch(spheres_, plan_, spills, asked_for_, kPoolsAimedAt);
     if (chosen == kOutside) return;
-    leave_out_branch(chosen, spills);
+    for (const std::uint32_t i : branch_of(chosen, spills)) {
+      network_of_[i] = kOutside;
+      ++dropped_.full;
+      dropped_.volume += volume_of({i});
+    }
+    drop_tubes_of_left_out();
   }
-}
-
-void Planner::leave_out_branch(std::uint32_t root, const SpillHeights& spills) {
-  std::vector<bool> is_in_branch(spheres_.size(), false);
-  for (const std::uint32_t i : spills.order) {
-    const std::uint32_t next = spills.towards[i];
-    if (i != root && (next == kOutside || !is_in_branch[next])) continue;
-    is_in_branch[i] = true;
-    network_of_[i] = kOutside;
-    ++dropped_.full;
-    dropped_.volume += volume_of({i});
-  }
-  drop_tubes_of_left_out();
 }
 
 // Numbers the sets of voids that are joined anew, since leaving out may have cut some in two, and gives each

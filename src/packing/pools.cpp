@@ -1,8 +1,10 @@
 #include "packing/pools.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <queue>
 #include <tbb/parallel_invoke.h>
@@ -193,6 +195,65 @@ double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double he
 
 SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up) {
   return spill_heights_over(floors_of_channels(spheres, plan, up), spheres, plan, up);
+}
+
+std::vector<Pool> upright_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
+  const SpillHeights spills = spill_heights(spheres, plan, plan.roof.up);
+  std::vector<std::uint32_t> root_of(spheres.size(), kOutside);
+  std::map<std::uint32_t, Pool> pool_of;
+  for (const std::uint32_t i : spills.order) {
+    const std::uint32_t next = spills.towards[i];
+    root_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? root_of[next] : i;
+    Pool& pool = pool_of[root_of[i]];
+    pool.volume += volume_below(plan.roof, spheres[i], plan.roof.up, spills.height[i]);
+    pool.voids.push_back(i);
+  }
+  std::vector<Pool> pools;
+  pools.reserve(pool_of.size());
+  for (auto& [root, pool] : pool_of) pools.push_back(std::move(pool));
+  std::stable_sort(pools.begin(), pools.end(),
+                   [](const Pool& a, const Pool& b) { return a.volume > b.volume; });
+  return pools;
+}
+
+std::vector<std::uint32_t> branch_of(std::uint32_t root, const SpillHeights& spills) {
+  std::vector<std::uint32_t> branch;
+  std::vector<bool> is_in_branch(spills.towards.size(), false);
+  for (const std::uint32_t i : spills.order) {
+    const std::uint32_t next = spills.towards[i];
+    if (i != root && (next == kOutside || !is_in_branch[next])) continue;
+    is_in_branch[i] = true;
+    branch.push_back(i);
+  }
+  return branch;
+}
+
+std::uint32_t fullest_branch(std::span<const Sphere> spheres, const DrainagePlan& plan,
+                             const SpillHeights& spills, std::span<const std::uint32_t> kept, double least) {
+  std::vector<double> whole(spheres.size(), 0), full(spheres.size(), 0);
+  for (const std::uint32_t i : spills.order) {
+    whole[i] = void_volume(plan.roof, spheres[i].radius);
+    full[i] = volume_below(plan.roof, spheres[i], plan.roof.up, spills.height[i]);
+  }
+  std::vector<bool> has_hole(spheres.size(), false), is_kept(spheres.size(), false);
+  for (const EscapeHole& hole : plan.holes) has_hole[hole.from] = true;
+  for (const std::uint32_t i : kept) is_kept[i] = true;
+  std::array<std::uint32_t, 2> worst{kOutside, kOutside};  // without a hole, and with one
+  std::array<double, 2> most{least, least};
+  for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
+    const std::uint32_t i = *at, next = spills.towards[*at];
+    const std::size_t kind = has_hole[i] ? 1 : 0;
+    if (!is_kept[i] && full[i] > most[kind] * whole[i]) {
+      most[kind] = full[i] / whole[i];
+      worst[kind] = i;
+    }
+    if (next == kOutside) continue;
+    whole[next] += whole[i];
+    full[next] += full[i];
+    has_hole[next] = has_hole[next] || has_hole[i];
+    is_kept[next] = is_kept[next] || is_kept[i];
+  }
+  return worst[0] != kOutside ? worst[0] : worst[1];
 }
 
 TrappedPools trapped_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
