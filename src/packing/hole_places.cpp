@@ -142,16 +142,16 @@ std::optional<Vec3d> HolePlaces::start_inside(const Sphere& ball, Vec3d directio
 HolePlaces::Ranking::Ranking(const HolePlaces& places, std::span<Place* const> candidates, Vec3d down,
                              double lowest, double height)
     : places_(places), down_(down), lowest_(lowest), height_(height) {
-  for (std::size_t i = 0; i < candidates.size(); ++i) push({0, i, candidates[i]});
+  for (std::size_t i = 0; i < candidates.size(); ++i) push(i, *candidates[i]);
 }
 
 double HolePlaces::Ranking::cost_of(const Place& place) const {
   return place.sill - lowest_ + kShowingWeight * height_ * place.showing + kLengthWeight * place.length;
 }
 
-void HolePlaces::Ranking::push(Candidate candidate) {
-  candidate.cost = cost_of(*candidate.place);
-  if (candidate.cost < kInfinity) queue_.push(candidate);
+void HolePlaces::Ranking::push(std::size_t number, Place& place) {
+  const double cost = cost_of(place);
+  if (cost < kInfinity) queue_.push({cost, number, &place});
 }
 
 std::optional<EscapeHole> HolePlaces::Ranking::next() {
@@ -160,7 +160,7 @@ std::optional<EscapeHole> HolePlaces::Ranking::next() {
     queue_.pop();
     places_.look_at(*best.place, down_);
     if (cost_of(*best.place) <= best.cost) return best.place->hole;
-    push(best);
+    push(best.number, *best.place);
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -47,7 +48,7 @@ class HolePlaces {
     Ranking(const HolePlaces& places, std::span<Place* const> candidates, Vec3d down, double lowest,
             double height);
     double cost_of(const Place& place) const;
-    void push(Candidate candidate);
+    void push(std::size_t number, Place& place);
 
     const HolePlaces& places_;
     Vec3d down_;
