@@ -296,7 +296,7 @@ DrainedSolid carve_drained(OuterWithHoles outer, std::span<const Sphere> balls, 
 
 DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,
                            const CarveOptions& options, Monitor& monitor) {
-  auto cut = cut_holes(outer, balls, plan, options, monitor);
+  auto cut = cut_holes(outer, outer, balls, plan, options, monitor);
   if (const auto* uncut = std::get_if<UncutHoles>(&cut))
     throw cannot_be_cut(plan.holes[uncut->indices.front()]);
   return carve_drained(std::move(std::get<OuterWithHoles>(cut)), balls, plan, monitor);

@@ -1,11 +1,13 @@
 #include "printing/cut_holes.h"
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
+#include <iterator>
+#include <optional>
 #include <string>
+#include <tbb/parallel_for.h>
 #include <utility>
 
+#include "core/segment_distance.h"
 #include "printing/cut_surface.h"
 #include "printing/tube_openings.h"
 
@@ -29,26 +31,78 @@ CuttingPrism prism_of(const WayOut& way, const Roof& roof, double tolerance) {
   return prism;
 }
 
-// Without the elements at these places, ascending.
-template <typename T>
-void remove_at(std::vector<T>& values, std::span<const std::uint32_t> places) {
-  std::size_t kept = 0, next = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (next < places.size() && places[next] == i) {
-      ++next;
-    } else {
-      values[kept++] = values[i];
-    }
-  }
-  values.resize(kept);
-}
+// The triangles of the whole surface that a hole may meet, and how it is cut out of them.
+struct LoneCut {
+  std::vector<std::uint32_t> near;
+  std::optional<SurfaceCut> cut;
+};
 
-// What a cut leaves of a surface; its own triangles come last.
-void apply(const SurfaceCut& cut, Mesh& mesh) {
-  remove_at(mesh.triangles, cut.removed);
-  mesh.triangles.insert(mesh.triangles.end(), cut.surface.begin(), cut.surface.end());
-  mesh.positions.insert(mesh.positions.end(), cut.new_positions.begin(), cut.new_positions.end());
-}
+// A surface out of which holes are cut, one after the other. Triangles that were cut away keep their places
+// until the end.
+class SurfaceInWork {
+ public:
+  SurfaceInWork(const Mesh& whole, Mesh& mesh) : whole_(whole), mesh_(mesh) {
+    mesh_ = whole;
+    is_removed_.assign(whole.triangles.size(), false);
+  }
+
+  // What is left of triangles of the whole surface, and what cuts have made in their stead.
+  std::vector<std::uint32_t> what_is_left_of(std::span<const std::uint32_t> of_whole,
+                                             const CuttingPrism& prism) const {
+    std::vector<std::uint32_t> near;
+    const auto is_there = [this](std::uint32_t t) { return !is_removed_[t]; };
+    std::copy_if(of_whole.begin(), of_whole.end(), std::back_inserter(near), is_there);
+    for (auto t = static_cast<std::uint32_t>(whole_.triangles.size()); t < mesh_.triangles.size(); ++t) {
+      const auto [a, b, c] = mesh_.triangles[t];
+      const kernels::Facet facet{mesh_.positions[a], mesh_.positions[b], mesh_.positions[c]};
+      if (is_there(t) && distance_to_facet(axis_of(prism), facet) < reach_of(prism)) near.push_back(t);
+    }
+    return near;
+  }
+
+  // How a hole is cut out of what there is now.
+  std::optional<SurfaceCut> cut_for(const CuttingPrism& prism, const LoneCut& lone) const {
+    const std::vector<std::uint32_t> near = what_is_left_of(lone.near, prism);
+    if (near != lone.near) return cut_surface(mesh_, near, prism);
+    std::optional<SurfaceCut> cut = lone.cut;
+    if (!cut) return cut;
+    // Its own vertices come after those of the holes before it.
+    const auto added = static_cast<std::uint32_t>(mesh_.positions.size() - whole_.positions.size());
+    for (std::vector<Triangle>* triangles : {&cut->surface, &cut->sides}) {
+      for (Triangle& t : *triangles) {
+        for (std::uint32_t& v : t) v += v < whole_.positions.size() ? 0 : added;
+      }
+    }
+    return cut;
+  }
+
+  void apply(const SurfaceCut& cut) {
+    mesh_.triangles.insert(mesh_.triangles.end(), cut.surface.begin(), cut.surface.end());
+    mesh_.positions.insert(mesh_.positions.end(), cut.new_positions.begin(), cut.new_positions.end());
+    is_removed_.resize(mesh_.triangles.size(), false);
+    for (const std::uint32_t t : cut.removed) is_removed_[t] = true;
+  }
+
+  // Takes away what was cut away; returns which triangles of the whole surface that is, ascending.
+  std::vector<std::uint32_t> finish() {
+    std::vector<std::uint32_t> cut_triangles;
+    std::size_t kept = 0;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (!is_removed_[t]) {
+        mesh_.triangles[kept++] = mesh_.triangles[t];
+      } else if (t < whole_.triangles.size()) {
+        cut_triangles.push_back(t);
+      }
+    }
+    mesh_.triangles.resize(kept);
+    return cut_triangles;
+  }
+
+ private:
+  const Mesh& whole_;
+  Mesh& mesh_;
+  std::vector<bool> is_removed_;
+};
 
 }  // namespace
 
@@ -65,35 +119,34 @@ FailureError cannot_be_cut(const EscapeHole& hole) {
                       "ask for other places with --escape-hole");
 }
 
-std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, std::span<const Sphere> balls,
-                                                   const DrainagePlan& plan, const CarveOptions& options,
-                                                   Monitor& monitor) {
-  constexpr std::uint32_t kNew = std::numeric_limits<std::uint32_t>::max();
+std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, const SurfaceIndex& surface,
+                                                   std::span<const Sphere> balls, const DrainagePlan& plan,
+                                                   const CarveOptions& options, Monitor& monitor) {
+  std::vector<CuttingPrism> prisms;
+  for (const EscapeHole& hole : plan.holes)
+    prisms.push_back(prism_of({hole.tube, balls[hole.from]}, plan.roof, options.tolerance));
+  // Few holes meet the same triangles, and the others do not depend on each other.
+  std::vector<LoneCut> lone(prisms.size());
+  tbb::parallel_for(std::size_t{0}, prisms.size(), [&](std::size_t i) {
+    lone[i].near = surface.triangles_near(axis_of(prisms[i]), reach_of(prisms[i]));
+    lone[i].cut = cut_surface(outer, lone[i].near, prisms[i]);
+  });
   UncutHoles uncut;
   OuterWithHoles result;
   result.tolerance = options.tolerance;
-  Mesh& mesh = result.mesh = outer;
-  std::vector<std::uint32_t> origins(mesh.triangles.size());
-  std::iota(origins.begin(), origins.end(), 0U);
-  for (std::size_t i = 0; i < plan.holes.size(); ++i) {
+  SurfaceInWork work(outer, result.mesh);
+  for (std::size_t i = 0; i < prisms.size(); ++i) {
     monitor.check_interrupted();
-    const EscapeHole& hole = plan.holes[i];
-    const CuttingPrism prism = prism_of({hole.tube, balls[hole.from]}, plan.roof, options.tolerance);
-    auto cut = cut_surface(mesh, triangles_near(mesh, axis_of(prism), reach_of(prism)), prism);
+    auto cut = work.cut_for(prisms[i], lone[i]);
     if (!cut) {
       uncut.indices.push_back(i);
       continue;
     }
-    for (const std::uint32_t t : cut->removed) {
-      if (origins[t] != kNew) result.cut_triangles.push_back(origins[t]);
-    }
-    remove_at(origins, cut->removed);
-    apply(*cut, mesh);
-    origins.resize(mesh.triangles.size(), kNew);
-    result.holes.push_back({std::move(cut->sides), mesh.positions.size(), prism.ring});
+    work.apply(*cut);
+    result.holes.push_back({std::move(cut->sides), result.mesh.positions.size(), std::move(prisms[i].ring)});
   }
   if (!uncut.indices.empty()) return uncut;
-  std::sort(result.cut_triangles.begin(), result.cut_triangles.end());
+  result.cut_triangles = work.finish();
   result.kept_triangle_count = outer.triangles.size() - result.cut_triangles.size();
   return result;
 }

@@ -47,10 +47,10 @@ struct UncutHoles {
 };
 FailureError cannot_be_cut(const EscapeHole& hole);
 
-// Cuts a surface around the escape holes of a plan alone (cut_surface.h), for one after the other, so that
-// two may meet the same triangle. Throws InterruptedError.
-std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, std::span<const Sphere> balls,
-                                                   const DrainagePlan& plan, const CarveOptions& options,
-                                                   Monitor& monitor);
+// Cuts a surface, given with its index, around the escape holes of a plan alone (cut_surface.h), as if for
+// one after the other, so that two may meet the same triangle. Throws InterruptedError.
+std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, const SurfaceIndex& surface,
+                                                   std::span<const Sphere> balls, const DrainagePlan& plan,
+                                                   const CarveOptions& options, Monitor& monitor);
 
 }  // namespace aerate

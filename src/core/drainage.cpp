@@ -43,8 +43,10 @@ bool opens_below_roof(const Tube& tube, TubeEnd end, const Sphere& ball, const R
   if (!roof.shapes(ball.radius)) return true;
   const double shoulder = roof.shoulder(ball.radius), aside = ball.radius * roof.cosine;
   const double spacing = kOpeningSpacingShare * tube.radius;
-  for (const Vec3d p : ring_on_ball(tube, end, ball, roof.up, kRimPoints)) {
-    const Vec3d offset = p - ball.centre;
+  static const std::vector<TubeLine> lines = tube_lines(kRimPoints);
+  const Rim rim(tube, end, ball, roof.up);
+  for (const TubeLine line : lines) {
+    const Vec3d offset = rim.at(line) - ball.centre;
     const double height = dot(offset, roof.up);
     if (height >= shoulder) return false;
     // Distance from the point of the circle above or below it.
@@ -64,22 +66,22 @@ bool is_bridged(const Tube& tube, const Roof& roof) {
   return !roof.limits_ceilings() || ceiling_width(tube, roof) <= roof.bridge() * (1 + 1e-9);
 }
 
-std::vector<Vec3d> ring_on_ball(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up,
-                                std::size_t sides) {
-  const TubeFrame frame = frame_of(tube, up);
-  std::vector<Vec3d> ring;
-  ring.reserve(sides);
+std::vector<TubeLine> tube_lines(std::size_t sides) {
+  std::vector<TubeLine> lines;
+  lines.reserve(sides);
   for (std::size_t i = 0; i < sides; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(sides);
-    const Vec3d on_line =
-        tube.start + (frame.down * std::cos(angle) + frame.across * std::sin(angle)) * tube.radius;
-    const Vec3d from_centre = on_line - ball.centre;
-    const double along = dot(from_centre, frame.axis);
-    const double half_chord =
-        std::sqrt(std::max(0.0, ball.radius * ball.radius - length_squared(from_centre) + along * along));
-    const double t = -along + (end == TubeEnd::start ? half_chord : -half_chord);
-    ring.push_back(on_line + frame.axis * t);
+    lines.push_back({std::cos(angle), std::sin(angle)});
   }
+  return lines;
+}
+
+std::vector<Vec3d> ring_on_ball(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up,
+                                std::size_t sides) {
+  const Rim rim(tube, end, ball, up);
+  std::vector<Vec3d> ring;
+  ring.reserve(sides);
+  for (const TubeLine line : tube_lines(sides)) ring.push_back(rim.at(line));
   return ring;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -88,9 +90,38 @@ double ceiling_width(const Tube& tube, const Roof& roof);
 // Needs no support, or the printer bridges it?
 bool is_bridged(const Tube& tube, const Roof& roof);
 
-// Where the lines of a tube, `sides` of them evenly round its axis and the first of them on its lower side,
-// leave the ball (at the tube's start) or enter it (at its end). All points lie on the sphere; they run
-// counter-clockwise about the axis. The tube has to meet the ball all round.
+// The lines of a tube, evenly round its axis, by the angle from its lower side, counter-clockwise.
+struct TubeLine {
+  double cosine, sine;
+};
+std::vector<TubeLine> tube_lines(std::size_t sides);
+
+// The rim of a tube's opening into a ball, which it has to meet all round.
+class Rim {
+ public:
+  Rim(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up)
+      : tube_(tube), end_(end), ball_(ball), frame_(frame_of(tube, up)) {}
+
+  // Where a line of the tube leaves the ball (at the tube's start) or enters it (at its end).
+  Vec3d at(TubeLine line) const {
+    const Vec3d on_line =
+        tube_.start + (frame_.down * line.cosine + frame_.across * line.sine) * tube_.radius;
+    const Vec3d from_centre = on_line - ball_.centre;
+    const double along = dot(from_centre, frame_.axis);
+    const double half_chord =
+        std::sqrt(std::max(0.0, ball_.radius * ball_.radius - length_squared(from_centre) + along * along));
+    const double t = -along + (end_ == TubeEnd::start ? half_chord : -half_chord);
+    return on_line + frame_.axis * t;
+  }
+
+ private:
+  const Tube& tube_;
+  TubeEnd end_;
+  const Sphere& ball_;
+  TubeFrame frame_;
+};
+
+// Points of the rim on `sides` lines. All lie on the sphere; they run counter-clockwise about the axis.
 std::vector<Vec3d> ring_on_ball(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up,
                                 std::size_t sides);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tbb/parallel_for.h>
 #include <utility>
 
 #include "core/top_opening.h"
@@ -20,7 +21,7 @@ constexpr std::array<Attachment, 7> kAttachments{
 
 // After those: straight up out of the top of a roof.
 constexpr std::size_t kOutOfTop = kAttachments.size();
-static_assert(ChannelWays::kCount == kAttachments.size() + 1);
+constexpr std::size_t kWays = kOutOfTop + 1;
 
 // A channel that falls by less is level, mm.
 constexpr double kLevel = 1e-6;
@@ -28,87 +29,117 @@ constexpr double kLevel = 1e-6;
 // Channels that leave below a roof are moved so many times at most, since that turns them.
 constexpr int kMostShifts = 4;
 
+// Voids that are looked at between questions to the monitor.
+constexpr std::size_t kVoidsPerPiece = 256;
+
+class ChannelFinder {
+ public:
+  ChannelFinder(std::span<const Sphere> spheres, const Roof& roof, double radius, double longest)
+      : spheres_(spheres), roof_(roof), radius_(radius), longest_(longest) {}
+
+  // All from a ball to others that come after it.
+  std::vector<ChannelWay> from(std::uint32_t ball, std::span<const std::uint32_t> neighbours) const {
+    std::vector<ChannelWay> found;
+    for (const std::uint32_t other : neighbours) {
+      for (std::size_t way = 0; way < kWays && other > ball; ++way) {
+        const auto channel = find(ball, other, way);
+        if (channel) found.push_back({*channel, {sill_of(*channel, roof_.up), sill_of(*channel, -roof_.up)}});
+      }
+    }
+    return found;
+  }
+
+ private:
+  double sill_of(const Channel& channel, Vec3d up) const {
+    return aerate::sill_of(channel.tube, spheres_[channel.from], spheres_[channel.to], up);
+  }
+
+  std::optional<Channel> find(std::uint32_t a, std::uint32_t b, std::size_t way) const {
+    const Vec3d up = roof_.up;
+    const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
+    if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
+    const Sphere& lower = spheres_[a];
+    const Sphere& upper = spheres_[b];
+    if (way == kOutOfTop) return out_of_top(a, b);
+    const Attachment where = kAttachments[way];
+    Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
+    const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
+    // Off the centres only where that leaves a channel which does not fall from the lower to the upper.
+    if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) < -kLevel)
+      return std::nullopt;
+    inside_lower = below_roof(lower, inside_lower, inside_upper);
+    const auto tube = tube_between(lower, upper, inside_lower, inside_upper, radius_);
+    if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
+        !opens_below_roof(*tube, TubeEnd::start, lower, roof_) ||
+        !opens_below_roof(*tube, TubeEnd::end, upper, roof_)) {
+      return std::nullopt;
+    }
+    return Channel{a, b, *tube};
+  }
+
+  // Where a channel from a ball with a roof to a higher place has to start so that it leaves the ball below
+  // the roof: `inside`, or so much beside it, across the channel and downwards.
+  Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const {
+    if (!roof_.shapes(ball.radius)) return inside;
+    for (int i = 0; i < kMostShifts; ++i) {
+      const Vec3d along = to - inside;
+      const auto way = way_below_roof(ball, roof_, along * (1 / length(along)), radius_);
+      if (!way) return inside;
+      const double excess = dot(inside - ball.centre, way->across) - way->highest;
+      if (excess <= 0) return inside;
+      inside = inside - way->across * excess;
+    }
+    return inside;
+  }
+
+  std::optional<Channel> out_of_top(std::uint32_t lower, std::uint32_t upper) const {
+    const Sphere& ball = spheres_[lower];
+    if (!has_top_for(radius_, ball, roof_)) return std::nullopt;
+    const Vec3d start = ball.centre + roof_.up * top_opening_height(radius_, ball.radius, roof_);
+    const auto tube = tube_into(spheres_[upper], start, roof_.up, radius_);
+    if (!tube || length(tube->end - tube->start) > longest_ ||
+        !opens_below_roof(*tube, TubeEnd::end, spheres_[upper], roof_)) {
+      return std::nullopt;
+    }
+    return Channel{lower, upper, *tube};
+  }
+
+  std::span<const Sphere> spheres_;
+  const Roof& roof_;
+  double radius_;
+  double longest_;
+};
+
 }  // namespace
 
 ChannelWays::ChannelWays(std::span<const Sphere> spheres, const Roof& roof, double radius, double longest,
-                         const TubeClearance& clearance)
-    : spheres_(spheres), roof_(roof), radius_(radius), longest_(longest), clearance_(clearance) {}
-
-// Where a channel from a ball with a roof to a higher place has to start so that it leaves the ball below the
-// roof: `inside`, or so much beside it, across the channel and downwards.
-Vec3d ChannelWays::below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const {
-  if (!roof_.shapes(ball.radius)) return inside;
-  for (int i = 0; i < kMostShifts; ++i) {
-    const Vec3d along = to - inside;
-    const auto way = way_below_roof(ball, roof_, along * (1 / length(along)), radius_);
-    if (!way) return inside;
-    const double excess = dot(inside - ball.centre, way->across) - way->highest;
-    if (excess <= 0) return inside;
-    inside = inside - way->across * excess;
+                         const TubeClearance& clearance, Monitor& monitor)
+    : clearance_(clearance), of_ball_(spheres.size()) {
+  const ChannelFinder finder(spheres, roof, radius, longest);
+  std::vector<std::vector<ChannelWay>> of_piece(kVoidsPerPiece);
+  for (std::size_t first = 0; first < spheres.size(); first += kVoidsPerPiece) {
+    monitor.check_interrupted();
+    const std::size_t count = std::min(kVoidsPerPiece, spheres.size() - first);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      const auto ball = static_cast<std::uint32_t>(first + i);
+      of_piece[i] = finder.from(ball, clearance.neighbours(ball));
+    });
+    for (std::size_t i = 0; i < count; ++i) ways_.insert(ways_.end(), of_piece[i].begin(), of_piece[i].end());
   }
-  return inside;
-}
-
-std::optional<Channel> ChannelWays::out_of_top(std::uint32_t lower, std::uint32_t upper) const {
-  const Sphere& ball = spheres_[lower];
-  if (!has_top_for(radius_, ball, roof_)) return std::nullopt;
-  const Vec3d start = ball.centre + roof_.up * top_opening_height(radius_, ball.radius, roof_);
-  const auto tube = tube_into(spheres_[upper], start, roof_.up, radius_);
-  if (!tube || length(tube->end - tube->start) > longest_ ||
-      !opens_below_roof(*tube, TubeEnd::end, spheres_[upper], roof_)) {
-    return std::nullopt;
+  for (std::uint32_t way = 0; way < ways_.size(); ++way) {
+    of_ball_[ways_[way].channel.from].push_back(way);
+    of_ball_[ways_[way].channel.to].push_back(way);
   }
-  return Channel{lower, upper, *tube};
+  free_.resize(ways_.size());
 }
 
-std::uint64_t ChannelWays::key_of(std::uint32_t a, std::uint32_t b, std::size_t way) const {
-  return (static_cast<std::uint64_t>(std::min(a, b)) * spheres_.size() + std::max(a, b)) * kCount + way;
-}
-
-const std::optional<Channel>& ChannelWays::channel(std::uint32_t a, std::uint32_t b, std::size_t way) {
-  const auto [place, is_new] = channels_.try_emplace(key_of(a, b, way));
-  if (is_new) place->second = find_channel(a, b, way);
-  return place->second;
-}
-
-double ChannelWays::sill(const Channel& channel, std::size_t way, Vec3d up) {
-  auto& sills = sills_[dot(up, roof_.up) > 0 ? 0 : 1];
-  const auto [place, is_new] = sills.try_emplace(key_of(channel.from, channel.to, way), 0);
-  if (is_new) place->second = sill_of(channel.tube, spheres_[channel.from], spheres_[channel.to], up);
-  return place->second;
-}
-
-std::optional<Channel> ChannelWays::find_channel(std::uint32_t a, std::uint32_t b, std::size_t way) const {
-  const Vec3d up = roof_.up;
-  const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
-  if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
-  const Sphere& lower = spheres_[a];
-  const Sphere& upper = spheres_[b];
-  if (way == kOutOfTop) return out_of_top(a, b);
-  const Attachment where = kAttachments[way];
-  Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
-  const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
-  // Off the centres only where that leaves a channel which does not fall from the lower to the upper.
-  if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) < -kLevel)
-    return std::nullopt;
-  inside_lower = below_roof(lower, inside_lower, inside_upper);
-  const auto tube = tube_between(lower, upper, inside_lower, inside_upper, radius_);
-  if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
-      !opens_below_roof(*tube, TubeEnd::start, lower, roof_) ||
-      !opens_below_roof(*tube, TubeEnd::end, upper, roof_)) {
-    return std::nullopt;
+bool ChannelWays::is_free(std::size_t way) {
+  if (!free_[way]) {
+    const Channel& channel = ways_[way].channel;
+    free_[way] = clearance_.keeps_gap_to_voids(channel.tube, channel.from, channel.to) &&
+                 clearance_.keeps_wall(channel.tube);
   }
-  return Channel{a, b, *tube};
-}
-
-bool ChannelWays::is_free(const Channel& channel, std::size_t way) {
-  const std::uint64_t key = key_of(channel.from, channel.to, way);
-  const auto known = free_.find(key);
-  if (known != free_.end()) return known->second;
-  const bool is_free = clearance_.keeps_gap_to_voids(channel.tube, channel.from, channel.to) &&
-                       clearance_.keeps_wall(channel.tube);
-  free_.emplace(key, is_free);
-  return is_free;
+  return *free_[way];
 }
 
 }  // namespace aerate

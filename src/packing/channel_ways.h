@@ -5,53 +5,51 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
+#include <vector>
 
 #include "core/drainage.h"
+#include "core/monitor.h"
 #include "core/roof.h"
 #include "kernels/sphere.h"
 #include "packing/tube_clearance.h"
 
 namespace aerate {
 
-// The straight channels that may join two voids: a few heights at which their axis may leave the lower one
-// and enter the upper, and straight up out of the top of a roof. Steep channels between the top of one and
-// the bottom of the other leave no pools; those through the centres find a way most often.
+// A straight channel that may join two voids, from the lower to the upper. It opens into both of them all
+// round and below their roofs, is not too long, and leans no further than its own ceiling is bridged.
+struct ChannelWay {
+  Channel channel;
+  std::array<double, 2> sills;  // that liquid has to reach to pass it: in print orientation, and upside down
+
+  std::uint32_t other_than(std::uint32_t ball) const {
+    return channel.from == ball ? channel.to : channel.from;
+  }
+};
+
+// All of them: a few heights at which their axis may leave the lower void and enter the upper, and straight
+// up out of the top of a roof. Steep channels between the top of one and the bottom of the other leave no
+// pools; those through the centres find a way most often.
 class ChannelWays {
  public:
-  static constexpr std::size_t kCount = 8;
-
-  // Channels of this radius (mm), none longer than `longest`. Spheres and clearance must outlive this.
+  // Channels of this radius (mm), none longer than `longest`. Clearance must outlive this.
   ChannelWays(std::span<const Sphere> spheres, const Roof& roof, double radius, double longest,
-              const TubeClearance& clearance);
+              const TubeClearance& clearance, Monitor& monitor);
 
-  // The channel of a way, from the lower to the upper void; nullopt if it cannot open into both of them all
-  // round and below their roofs, or is too long, or leans so far that its own ceiling is wider than the
-  // bridge. Remembered.
-  const std::optional<Channel>& channel(std::uint32_t a, std::uint32_t b, std::size_t way);
+  // Those between the same two voids follow each other, by what they are to be preferred.
+  std::size_t size() const { return ways_.size(); }
+  const ChannelWay& operator[](std::size_t way) const { return ways_[way]; }
 
-  // The height along `up`, which is the roof's or the opposite, that liquid has to reach to pass it;
-  // remembered.
-  double sill(const Channel& channel, std::size_t way, Vec3d up);
+  // Those from or to a void.
+  std::span<const std::uint32_t> of(std::uint32_t ball) const { return of_ball_[ball]; }
 
-  // Whether the channel of a way keeps clear of everything but other channels; remembered.
-  bool is_free(const Channel& channel, std::size_t way);
+  // Does the channel of a way keep clear of everything but other channels? Remembered.
+  bool is_free(std::size_t way);
 
  private:
-  std::uint64_t key_of(std::uint32_t a, std::uint32_t b, std::size_t way) const;
-  std::optional<Channel> find_channel(std::uint32_t a, std::uint32_t b, std::size_t way) const;
-  Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const;
-  std::optional<Channel> out_of_top(std::uint32_t lower, std::uint32_t upper) const;
-
-  std::span<const Sphere> spheres_;
-  Roof roof_;
-  double radius_;
-  double longest_;
   const TubeClearance& clearance_;
-  // By pair and way; sills for print orientation and upside down.
-  std::unordered_map<std::uint64_t, bool> free_;
-  std::unordered_map<std::uint64_t, std::optional<Channel>> channels_;
-  std::array<std::unordered_map<std::uint64_t, double>, 2> sills_;
+  std::vector<ChannelWay> ways_;
+  std::vector<std::vector<std::uint32_t>> of_ball_;
+  std::vector<std::optional<bool>> free_;  // by way
 };
 
 }  // namespace aerate

@@ -17,6 +17,8 @@
 namespace aerate {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // The longest hole, in its diameters and walls together.
 constexpr double kLongestInDiameters = 3;
 constexpr double kLongestInWalls = 3;
@@ -137,10 +139,36 @@ std::optional<Vec3d> HolePlaces::start_inside(const Sphere& ball, Vec3d directio
   return ball.centre + down * std::min(farthest * share / across, ball.radius * 0.99);
 }
 
-std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down, double share) {
+HolePlaces::Ranking::Ranking(const HolePlaces& places, std::span<Place* const> candidates, Vec3d down,
+                             double lowest, double height)
+    : places_(places), down_(down), lowest_(lowest), height_(height) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) push(i, *candidates[i]);
+}
+
+double HolePlaces::Ranking::cost_of(const Place& place) const {
+  return place.sill - lowest_ + kShowingWeight * height_ * place.showing + kLengthWeight * place.length;
+}
+
+void HolePlaces::Ranking::push(std::size_t number, Place& place) {
+  const double cost = cost_of(place);
+  if (cost < kInfinity) queue_.push({cost, number, &place});
+}
+
+std::optional<EscapeHole> HolePlaces::Ranking::next() {
+  while (!queue_.empty()) {
+    const Candidate best = queue_.top();
+    queue_.pop();
+    places_.look_at(*best.place, down_);
+    if (cost_of(*best.place) <= best.cost) return best.place->hole;
+    push(best.number, *best.place);
+  }
+  return std::nullopt;
+}
+
+HolePlaces::Ranking HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down, double share) {
   const Vec3d up = -down;
   const auto bottom_of = [&](std::uint32_t i) { return dot(spheres_[i].centre, up) - spheres_[i].radius; };
-  double lowest = std::numeric_limits<double>::infinity();
+  double lowest = kInfinity;
   double highest = -lowest;
   std::vector<std::uint32_t> wide;
   for (const std::uint32_t i : balls) {
@@ -162,32 +190,20 @@ std::vector<EscapeHole> HolePlaces::ranked(std::span<const std::uint32_t> balls,
   const double height = highest - lowest;
   while (wide.size() > 4 && bottom_of(wide.back()) > lowest + share * height) wide.pop_back();
 
-  look_at(wide, down);
-  struct Ranked {
-    double cost;
-    const Place* place;
-  };
-  std::vector<Ranked> ranked;
+  find_places(wide, down);
+  std::vector<Place*> candidates;
   for (const std::uint32_t i : wide) {
-    for (const Place& place : *places_of(down)[i])
-      ranked.push_back({place.sill - lowest + kShowingWeight * height * place.showing +
-                            kLengthWeight * length(place.hole.tube.end - place.hole.tube.start),
-                        &place});
+    for (Place& place : *places_of(down)[i]) candidates.push_back(&place);
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
-  std::vector<EscapeHole> holes;
-  holes.reserve(ranked.size());
-  for (const Ranked& found : ranked) holes.push_back(found.place->hole);
-  return holes;
+  return {*this, candidates, down, lowest, height};
 }
 
 HolePlaces::PlacesByBall& HolePlaces::places_of(Vec3d down) {
   return places_[dot(down, limits_.roof.up) > 0 ? 1 : 0];
 }
 
-// Finds the places of those balls that have not been looked at.
-void HolePlaces::look_at(std::span<const std::uint32_t> balls, Vec3d down) {
+// Finds the places of those balls for which that was not done.
+void HolePlaces::find_places(std::span<const std::uint32_t> balls, Vec3d down) {
   PlacesByBall& places = places_of(down);
   places.resize(spheres_.size());
   std::vector<Vec3d> directions = directions_about(down);
@@ -219,11 +235,23 @@ std::optional<HolePlaces::Place> HolePlaces::place_of(std::uint32_t from, Vec3d 
       !is_bridged(*tube, limits_.roof)) {
     return std::nullopt;
   }
-  Place place{{from, *tube, 0}, 0, 0};
-  if (!reach_surface(place.hole)) return std::nullopt;
-  place.sill = sill_of_hole(place.hole, ball, -down);
-  place.showing = showing(place.hole.tube.end);
-  return place;
+  return Place{.hole = {from, *tube, 0},
+               .sill = opening_floor(*tube, TubeEnd::start, ball, -down),
+               .length = limits_.wall};
+}
+
+// Follows the tube to the surface.
+void HolePlaces::look_at(Place& place, Vec3d down) const {
+  if (place.is_looked_at) return;
+  place.is_looked_at = true;
+  const Tube& tube = place.hole.tube;
+  if (reach_surface(place.hole)) {
+    place.sill = sill_of_hole(place.hole, spheres_[place.hole.from], -down);
+    place.showing = showing(tube.end);
+    place.length = length(tube.end - tube.start);
+  } else {
+    place.sill = kInfinity;
+  }
 }
 
 std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> balls) const {

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
+#include <queue>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "core/drainage.h"
@@ -20,17 +24,48 @@ double longest_hole(const DrainageRequest& request, const PackingLimits& limits)
 // Where the surface of a model can be opened. What was found is remembered: the same balls are looked at for
 // many plans.
 class HolePlaces {
+  struct Place;
+
  public:
+  // Tubes that lead out of some balls, the best first. What a tube costs at least is known before its way to
+  // the surface, so that is looked for only where it may be the best of those left.
+  class Ranking {
+   public:
+    // nullopt if there are no more.
+    std::optional<EscapeHole> next();
+
+   private:
+    friend class HolePlaces;
+    struct Candidate {
+      double cost;  // what it is at least, or what it is
+      std::size_t number;
+      Place* place;
+      friend bool operator>(const Candidate& a, const Candidate& b) {
+        return std::tie(a.cost, a.number) > std::tie(b.cost, b.number);
+      }
+    };
+    // `lowest` and `height` are those of the balls.
+    Ranking(const HolePlaces& places, std::span<Place* const> candidates, Vec3d down, double lowest,
+            double height);
+    double cost_of(const Place& place) const;
+    void push(std::size_t number, Place& place);
+
+    const HolePlaces& places_;
+    Vec3d down_;
+    double lowest_, height_;
+    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+  };
+
   // `outward`: see DrainableModel.
   HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres,
              const PackingLimits& limits, const DrainageRequest& request, const TubeClearance& clearance);
 
-  // Tubes that lead out of some of the balls, the best first. `down` is the way liquid runs: the direction of
-  // gravity as printed for the low hole, the opposite for the high one. A place is the better, the lower it
-  // lies in that sense, the less it shows (facing down or backwards in print orientation; back is +y where up
-  // is +z), and the shorter the tube.
+  // Tubes that lead out of some of the balls. `down` is the way liquid runs: the direction of gravity as
+  // printed for the low hole, the opposite for the high one. A place is the better, the lower it lies in that
+  // sense, the less it shows (facing down or backwards in print orientation; back is +y where up is +z), and
+  // the shorter the tube.
   // Only balls in the lowest `share` of their height in that sense are looked at.
-  std::vector<EscapeHole> ranked(std::span<const std::uint32_t> balls, Vec3d down, double share);
+  Ranking ranked(std::span<const std::uint32_t> balls, Vec3d down, double share);
 
   // Tubes that lead from balls to a place on the surface near `place`, the shortest first. Throws UsageError
   // if the surface is farther than the hole's diameter from there.
@@ -41,16 +76,22 @@ class HolePlaces {
   bool is_sound(const EscapeHole& hole);
 
  private:
+  static constexpr double kLeastShowing = 0.139;  // of places that face down and backwards
+
+  // Before it is looked at, `sill`, `showing` and `length` are what they are at least.
   struct Place {
     EscapeHole hole;
-    double sill;     // that liquid has to reach
-    double showing;  // 0 (where it does not show) to 1
+    double sill;                     // that liquid has to reach; infinite if the surface is too far away
+    double showing = kLeastShowing;  // to 1
+    double length;                   // of the tube
+    bool is_looked_at = false;
   };
   using PlacesByBall = std::vector<std::optional<std::vector<Place>>>;
 
   PlacesByBall& places_of(Vec3d down);
-  void look_at(std::span<const std::uint32_t> balls, Vec3d down);
+  void find_places(std::span<const std::uint32_t> balls, Vec3d down);
   std::optional<Place> place_of(std::uint32_t from, Vec3d direction, Vec3d down, std::size_t point) const;
+  void look_at(Place& place, Vec3d down) const;
   bool is_sound_alone(const EscapeHole& hole) const;
   bool reach_surface(EscapeHole& hole) const;
   std::optional<Vec3d> start_inside(const Sphere& ball, Vec3d direction, Vec3d down, std::size_t point) const;

@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <queue>
 #include <set>
 #include <string>
 #include <tuple>
@@ -15,6 +14,7 @@
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "packing/channel_ways.h"
+#include "packing/flood.h"
 #include "packing/hole_places.h"
 #include "packing/pools.h"
 #include "packing/tube_clearance.h"
@@ -56,6 +56,20 @@ std::string shortened(double value) {
   return text;
 }
 
+// Gives holes one by one, the best first; nullopt when there are no more.
+using HoleSource = std::function<std::optional<EscapeHole>()>;
+
+HoleSource in_order(std::span<const EscapeHole> holes) {
+  return [holes]() mutable {
+    std::optional<EscapeHole> next;
+    if (!holes.empty()) {
+      next = holes.front();
+      holes = holes.subspan(1);
+    }
+    return next;
+  };
+}
+
 class Planner {
  public:
   Planner(const DrainableModel& model, const Packing& packing, const DrainageRequest& request,
@@ -69,7 +83,7 @@ class Planner {
         clearance_(model.surface, spheres_, packing.limits,
                    std::max(longest_, longest_hole(request, packing.limits)),
                    std::max(request.channel_radius, request.hole_radius)),
-        ways_(spheres_, roof_, request.channel_radius, longest_, clearance_),
+        ways_(spheres_, roof_, request.channel_radius, longest_, clearance_, monitor),
         places_(model.outward, spheres_, packing.limits, request, clearance_) {
     plan_.roof = roof_;
   }
@@ -79,43 +93,29 @@ class Planner {
 
  private:
   using Members = std::vector<std::uint32_t>;
-  struct Candidate {
-    double height;  // that liquid has to reach
-    double length;
-    std::uint32_t to, from;
-    std::size_t way;
-    friend bool operator>(const Candidate& a, const Candidate& b) {
-      return std::tie(a.height, a.length, a.to, a.from, a.way) >
-             std::tie(b.height, b.length, b.to, b.from, b.way);
-    }
-  };
-  using Queue = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
   using UncutPlace = std::tuple<std::uint32_t, double, double, double>;
-  static constexpr std::size_t kExisting = ChannelWays::kCount;
 
   double largest_radius() const;
   double volume_of(const Members& members) const;
   std::vector<Members> networks();
   std::vector<Members> asked_for(std::vector<Members> networks);
   bool has_low_hole(const Members& members, std::uint32_t network) const;
+  bool is_open(std::size_t way);
   bool leaves_room_for_channel(const EscapeHole& hole);
   std::ptrdiff_t holes_of(std::uint32_t network) const;
   void leave_out(std::uint32_t network);
   void drop_tubes_of_left_out();
   bool open_network(const Members& members, std::uint32_t network);
   void open_and_join(std::span<const Members> networks, double whole_volume);
-  bool open_one(std::vector<EscapeHole> ranked, std::uint32_t network);
+  bool open_one(const HoleSource& next_best, std::uint32_t network);
   bool open(const Members& members, Vec3d down, std::uint32_t network);
-  void push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up);
-  std::vector<Candidate> flood(Vec3d up, const std::function<void(const Channel&)>& join);
+  std::vector<FloodStep> flooded(Vec3d up, const std::function<void(const Channel&)>& join);
   void place(const Channel& channel);
   void take_back_channels();
-  std::vector<std::pair<double, Members>> upright_pools() const;
   void open_pools(double whole_volume);
   void empty_pools();
   TrappedPools pools_now() const { return compacted().plan.pools; }
   void leave_out_pools();
-  void leave_out_branch(std::uint32_t root, const SpillHeights& spills);
   bool regroup();
   PlannedDrainage compacted() const;
 
@@ -132,8 +132,7 @@ class Planner {
   UndrainedVoids dropped_;
   std::vector<std::uint32_t> network_of_;
   std::vector<std::uint32_t> asked_for_;  // voids with holes that were asked for
-  std::vector<std::vector<std::uint32_t>> channels_of_;
-  std::set<UncutPlace> uncut_;  // where the surface is known not to be cut well
+  std::set<UncutPlace> uncut_;            // where the surface is known not to be cut well
 };
 
 double Planner::largest_radius() const {
@@ -150,40 +149,36 @@ double Planner::volume_of(const Members& members) const {
 
 // Sets of voids that channels can join, by falling volume; voids that are too narrow are counted.
 std::vector<Planner::Members> Planner::networks() {
+  std::vector<bool> is_wide(spheres_.size());
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    is_wide[i] = request_.channel_radius <= kWidestTubeShare * spheres_[i].radius;
+    if (is_wide[i]) continue;
+    ++dropped_.narrow;
+    dropped_.volume += volume_of({i});
+  }
   struct Pair {
     double gap;
-    std::uint32_t a, b;
+    std::size_t first, last;  // of the ways between the two
   };
-  std::vector<bool> is_wide(spheres_.size());
-  for (std::size_t i = 0; i < spheres_.size(); ++i)
-    is_wide[i] = request_.channel_radius <= kWidestTubeShare * spheres_[i].radius;
   std::vector<Pair> pairs;
-  for (std::uint32_t a = 0; a < spheres_.size(); ++a) {
-    if (!is_wide[a]) {
-      ++dropped_.narrow;
-      dropped_.volume += volume_of({a});
-      continue;
-    }
-    for (const std::uint32_t b : clearance_.neighbours(a)) {
-      if (b > a && is_wide[b])
-        pairs.push_back(
-            {length(spheres_[a].centre - spheres_[b].centre) - spheres_[a].radius - spheres_[b].radius, a,
-             b});
-    }
+  for (std::size_t first = 0, last = 0; first < ways_.size(); first = last) {
+    const std::uint32_t from = ways_[first].channel.from, to = ways_[first].channel.to;
+    while (last < ways_.size() && ways_[last].channel.from == from && ways_[last].channel.to == to) ++last;
+    const double apart = length(spheres_[from].centre - spheres_[to].centre);
+    if (is_wide[from] && is_wide[to])
+      pairs.push_back({apart - spheres_[from].radius - spheres_[to].radius, first, last});
   }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
-    return std::tie(p.gap, p.a, p.b) < std::tie(q.gap, q.a, q.b);
-  });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& p, const Pair& q) { return std::tie(p.gap, p.first) < std::tie(q.gap, q.first); });
   DisjointSets sets(spheres_.size());
   for (const Pair& pair : pairs) {
-    if (sets.root(pair.a) == sets.root(pair.b)) continue;
+    const std::uint32_t from = ways_[pair.first].channel.from, to = ways_[pair.first].channel.to;
+    if (sets.root(from) == sets.root(to)) continue;
     monitor_.check_interrupted();
-    for (std::size_t i = 0; i < ChannelWays::kCount; ++i) {
-      const auto found = ways_.channel(pair.a, pair.b, i);
-      if (found && ways_.is_free(*found, i)) {
-        sets.join(pair.a, pair.b);
-        break;
-      }
+    for (std::size_t way = pair.first; way < pair.last; ++way) {
+      if (!ways_.is_free(way)) continue;
+      sets.join(from, to);
+      break;
     }
   }
   std::vector<Members> by_root(spheres_.size());
@@ -213,7 +208,7 @@ std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) 
     const std::vector<EscapeHole> found = places_.leading_to(place, all);
     std::vector<EscapeHole> roomy = found;
     std::erase_if(roomy, [this](const EscapeHole& hole) { return !leaves_room_for_channel(hole); });
-    if (!open_one(std::move(roomy), 0) && !open_one(found, 0)) {
+    if (!open_one(in_order(roomy), 0) && !open_one(in_order(found), 0)) {
       throw UsageError("no straight hole leads from (" + std::to_string(place.x) + ", " +
                            std::to_string(place.y) + ", " + std::to_string(place.z) +
                            ") mm to a void that channels join to others",
@@ -238,25 +233,26 @@ std::vector<Planner::Members> Planner::asked_for(std::vector<Members> networks) 
   return reached;
 }
 
+// Can the channel of a way still be placed?
+bool Planner::is_open(std::size_t way) {
+  const Channel& channel = ways_[way].channel;
+  return ways_.is_free(way) && clearance_.keeps_gap_to_tubes(channel.tube, channel.from, channel.to);
+}
+
 // Can a channel still lead from the hole's void to a neighbour?
 bool Planner::leaves_room_for_channel(const EscapeHole& hole) {
   clearance_.place(hole.tube, hole.from, hole.from);
-  bool found = false;
-  for (const std::uint32_t to : clearance_.neighbours(hole.from)) {
-    for (std::size_t i = 0; i < ChannelWays::kCount && !found; ++i) {
-      const auto channel = ways_.channel(hole.from, to, i);
-      found = channel && ways_.is_free(*channel, i) &&
-              clearance_.keeps_gap_to_tubes(channel->tube, channel->from, channel->to);
-    }
-    if (found) break;
-  }
+  const std::span<const std::uint32_t> ways = ways_.of(hole.from);
+  const bool found =
+      std::any_of(ways.begin(), ways.end(), [this](std::uint32_t way) { return is_open(way); });
   clearance_.take_back_last();
   return found;
 }
 
-bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
+bool Planner::open_one(const HoleSource& next_best, std::uint32_t network) {
   int cuts = 0;
-  for (EscapeHole& hole : ranked) {
+  while (auto found = next_best()) {
+    EscapeHole& hole = *found;
     monitor_.check_interrupted();
     if (!places_.is_sound(hole)) continue;
     const Vec3d end = hole.tube.end;
@@ -277,8 +273,10 @@ bool Planner::open_one(std::vector<EscapeHole> ranked, std::uint32_t network) {
 
 // Opens some of the voids where liquid that runs `down` leaves them.
 bool Planner::open(const Members& members, Vec3d down, std::uint32_t network) {
-  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(),
-                     [&](double share) { return open_one(places_.ranked(members, down, share), network); });
+  return std::any_of(kSharesOfHeight.begin(), kSharesOfHeight.end(), [&](double share) {
+    HolePlaces::Ranking ranking = places_.ranked(members, down, share);
+    return open_one([&] { return ranking.next(); }, network);
+  });
 }
 
 std::ptrdiff_t Planner::holes_of(std::uint32_t network) const {
@@ -317,11 +315,6 @@ void Planner::drop_tubes_of_left_out() {
   const auto is_left_out = [this](std::uint32_t i) { return network_of_[i] == kOutside; };
   std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return is_left_out(hole.from); });
   std::erase_if(plan_.channels, [&](const Channel& c) { return is_left_out(c.from) || is_left_out(c.to); });
-  for (std::vector<std::uint32_t>& channels : channels_of_) channels.clear();
-  for (std::uint32_t index = 0; index < plan_.channels.size(); ++index) {
-    channels_of_[plan_.channels[index].from].push_back(index);
-    channels_of_[plan_.channels[index].to].push_back(index);
-  }
 }
 
 // Opens a network below and above, before channels take the room for it: at balls from which most of it can
@@ -335,7 +328,7 @@ bool Planner::open_network(const Members& members, std::uint32_t network) {
     const std::size_t before = plan_.holes.size();
     if (!is_asked_for_below && !open(candidates, -roof_.up, network)) break;
     if (holes_of(network) < 2) open(candidates, roof_.up, network);
-    const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
+    const std::vector<FloodStep> ways = flooded(roof_.up, [this](const Channel& channel) { place(channel); });
     take_back_channels();
     Members reached;
     for (const std::uint32_t i : members) {
@@ -375,7 +368,7 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
     const bool is_worth_it = holes_of(n) > 0 || volume_of(networks[n]) >= kLeastNetworkShare * whole_volume;
     if (!is_worth_it || !open_network(networks[n], n)) leave_out(n);
   }
-  const std::vector<Candidate> ways = flood(roof_.up, [this](const Channel& channel) { place(channel); });
+  const std::vector<FloodStep> ways = flooded(roof_.up, [this](const Channel& channel) { place(channel); });
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
     Members reached;
     for (const std::uint32_t i : networks[n]) {
@@ -399,89 +392,24 @@ void Planner::open_and_join(std::span<const Members> networks, double whole_volu
   }
 }
 
-void Planner::push_ways(Queue& queue, std::uint32_t from, double height, Vec3d up) {
-  for (const std::uint32_t index : channels_of_[from]) {
-    const Channel& c = plan_.channels[index];
-    const double sill = sill_of(c.tube, spheres_[c.from], spheres_[c.to], up);
-    queue.push({std::max(height, sill), 0, c.from == from ? c.to : c.from, from, kExisting});
-  }
-  for (const std::uint32_t to : clearance_.neighbours(from)) {
-    if (network_of_[to] != network_of_[from]) continue;
-    for (std::size_t i = 0; i < ChannelWays::kCount; ++i) {
-      const std::optional<Channel>& c = ways_.channel(from, to, i);
-      if (!c) continue;
-      const double sill = ways_.sill(*c, i, up);
-      queue.push({std::max(height, sill), length(c->tube.end - c->tube.start), to, from, i});
-    }
-  }
-}
-
-// Finds for each void that can be reached from the lowest hole of its network the way along which its liquid
-// has to rise least to run out, `up` being against gravity. `join` is called for each, in the order of that
-// height, if its last channel is not there yet.
-std::vector<Planner::Candidate> Planner::flood(Vec3d up, const std::function<void(const Channel&)>& join) {
-  std::map<std::uint32_t, const EscapeHole*> roots;
-  for (const EscapeHole& hole : plan_.holes) {
-    const EscapeHole*& root = roots[hole.network];
-    if (root == nullptr || dot(hole.tube.end, up) < dot(root->tube.end, up)) root = &hole;
-  }
-  Queue queue;
-  for (const auto& [network, root] : roots)
-    queue.push({sill_of_hole(*root, spheres_[root->from], up), 0, root->from, kOutside, kExisting});
-  std::vector<Candidate> ways(spheres_.size(), Candidate{kInfinity, 0, kOutside, kOutside, kExisting});
-  while (!queue.empty()) {
-    const Candidate next = queue.top();
-    queue.pop();
-    if (ways[next.to].to != kOutside) continue;
-    if (next.way != kExisting) {
-      const auto found = ways_.channel(next.from, next.to, next.way);
-      if (!ways_.is_free(*found, next.way) ||
-          !clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) {
-        continue;
-      }
-      monitor_.check_interrupted();
-      join(*found);
-    }
-    ways[next.to] = next;
-    push_ways(queue, next.to, next.height, up);
-  }
-  return ways;
+// Floods all networks, along channels that are there and those that can still be placed. `join` is called for
+// each of the latter that is the last to a void.
+std::vector<FloodStep> Planner::flooded(Vec3d up, const std::function<void(const Channel&)>& join) {
+  return flood({spheres_, network_of_, plan_, ways_}, up, [&](std::size_t way) {
+    if (!is_open(way)) return false;
+    monitor_.check_interrupted();
+    join(ways_[way].channel);
+    return true;
+  });
 }
 
 void Planner::place(const Channel& channel) {
   clearance_.place(channel.tube, channel.from, channel.to);
-  const auto index = static_cast<std::uint32_t>(plan_.channels.size());
   plan_.channels.push_back(channel);
-  channels_of_[channel.from].push_back(index);
-  channels_of_[channel.to].push_back(index);
 }
 
 void Planner::take_back_channels() {
-  for (; !plan_.channels.empty(); plan_.channels.pop_back()) {
-    channels_of_[plan_.channels.back().from].pop_back();
-    channels_of_[plan_.channels.back().to].pop_back();
-    clearance_.take_back_last();
-  }
-}
-
-// The members of each pool in print orientation, and its volume, the largest first.
-std::vector<std::pair<double, Planner::Members>> Planner::upright_pools() const {
-  const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
-  std::vector<std::uint32_t> pool_of(spheres_.size(), kOutside);
-  std::map<std::uint32_t, std::pair<double, Members>> pools;
-  for (const std::uint32_t i : spills.order) {
-    const std::uint32_t next = spills.towards[i];
-    pool_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? pool_of[next] : i;
-    auto& [volume, members] = pools[pool_of[i]];
-    volume += volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
-    members.push_back(i);
-  }
-  std::vector<std::pair<double, Members>> sorted;
-  sorted.reserve(pools.size());
-  for (auto& [root, pool] : pools) sorted.push_back(std::move(pool));
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  return sorted;
+  for (; !plan_.channels.empty(); plan_.channels.pop_back()) clearance_.take_back_last();
 }
 
 // Opens the largest pools below, until little stays.
@@ -489,9 +417,9 @@ void Planner::open_pools(double whole_volume) {
   for (int more = 0; more < kMostMoreHoles; ++more) {
     if (pools_now().after_both <= kPoolsAimedAt * whole_volume) return;
     bool opened = false;
-    for (const auto& [volume, members] : upright_pools()) {
-      if (volume < kPoolWorthHole * whole_volume) return;
-      opened = open(members, -roof_.up, network_of_[members.front()]);
+    for (const Pool& pool : upright_pools(spheres_, plan_)) {
+      if (pool.volume < kPoolWorthHole * whole_volume) return;
+      opened = open(pool.voids, -roof_.up, network_of_[pool.voids.front()]);
       if (opened) break;
     }
     if (!opened) return;
@@ -504,7 +432,7 @@ void Planner::empty_pools() {
   const std::size_t tree_size = plan_.channels.size();
   const double before = pools_now().after_both;
   const SpillHeights upright = spill_heights(spheres_, plan_, roof_.up);
-  const std::vector<Candidate> ways = flood(-roof_.up, [](const Channel&) {});
+  const std::vector<FloodStep> ways = flooded(-roof_.up, [](const Channel&) {});
   std::vector<bool> is_on_way(spheres_.size(), false);
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
     if (network_of_[i] == kOutside || upright.height[i] == kInfinity) continue;
@@ -515,61 +443,28 @@ void Planner::empty_pools() {
       is_on_way[at] = true;
   }
   for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
-    if (!is_on_way[i] || ways[i].way == kExisting) continue;
-    const auto found = ways_.channel(ways[i].from, i, ways[i].way);
-    if (clearance_.keeps_gap_to_tubes(found->tube, found->from, found->to)) place(*found);
+    if (!is_on_way[i] || ways[i].way == kExistingChannel) continue;
+    if (is_open(ways[i].way)) place(ways_[ways[i].way].channel);
   }
   // Not worth it: back to the tree.
   if (pools_now().after_both > kLeastGain * before) plan_.channels.resize(tree_size);
 }
 
-// Branches of which the largest share stays full are not made, until little stays. A branch is a void with
-// all that drains through it; those with an escape hole go last, and with one that was asked for never.
+// Branches of which the largest share stays full are not made, until little stays.
 void Planner::leave_out_pools() {
   for (std::size_t round = 0; round < spheres_.size(); ++round) {
     const TrappedPools pools = pools_now();
     if (pools.after_both <= kPoolsAimedAt * pools.total) return;
     const SpillHeights spills = spill_heights(spheres_, plan_, roof_.up);
-    std::vector<double> whole(spheres_.size(), 0), full(spheres_.size(), 0);
-    for (const std::uint32_t i : spills.order) {
-      whole[i] = volume_of({i});
-      full[i] = volume_below(roof_, spheres_[i], roof_.up, spills.height[i]);
-    }
-    std::vector<bool> has_hole(spheres_.size(), false), is_asked_for(spheres_.size(), false);
-    for (const EscapeHole& hole : plan_.holes) has_hole[hole.from] = true;
-    for (const std::uint32_t i : asked_for_) is_asked_for[i] = true;
-    std::array<std::uint32_t, 2> worst{kOutside, kOutside};  // without a hole, and with one
-    std::array<double, 2> most{kPoolsAimedAt, kPoolsAimedAt};
-    for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
-      const std::uint32_t i = *at, next = spills.towards[*at];
-      const std::size_t kind = has_hole[i] ? 1 : 0;
-      if (!is_asked_for[i] && full[i] > most[kind] * whole[i]) {
-        most[kind] = full[i] / whole[i];
-        worst[kind] = i;
-      }
-      if (next == kOutside) continue;
-      whole[next] += whole[i];
-      full[next] += full[i];
-      has_hole[next] = has_hole[next] || has_hole[i];
-      is_asked_for[next] = is_asked_for[next] || is_asked_for[i];
-    }
-    const std::uint32_t chosen = worst[0] != kOutside ? worst[0] : worst[1];
+    const std::uint32_t chosen = fullest_branch(spheres_, plan_, spills, asked_for_, kPoolsAimedAt);
     if (chosen == kOutside) return;
-    leave_out_branch(chosen, spills);
+    for (const std::uint32_t i : branch_of(chosen, spills)) {
+      network_of_[i] = kOutside;
+      ++dropped_.full;
+      dropped_.volume += volume_of({i});
+    }
+    drop_tubes_of_left_out();
   }
-}
-
-void Planner::leave_out_branch(std::uint32_t root, const SpillHeights& spills) {
-  std::vector<bool> is_in_branch(spheres_.size(), false);
-  for (const std::uint32_t i : spills.order) {
-    const std::uint32_t next = spills.towards[i];
-    if (i != root && (next == kOutside || !is_in_branch[next])) continue;
-    is_in_branch[i] = true;
-    network_of_[i] = kOutside;
-    ++dropped_.full;
-    dropped_.volume += volume_of({i});
-  }
-  drop_tubes_of_left_out();
 }
 
 // Numbers the sets of voids that are joined anew, since leaving out may have cut some in two, and gives each
@@ -611,7 +506,6 @@ PlannedDrainage Planner::run() {
   for (const Members& members : found) whole += volume_of(members);
   found = asked_for(std::move(found));
   network_of_.assign(spheres_.size(), kOutside);
-  channels_of_.resize(spheres_.size());
   open_and_join(found, whole);
   if (plan_.network_count == 0) {
     throw NothingToRemoveError(

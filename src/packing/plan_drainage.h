@@ -49,7 +49,7 @@ struct DrainableModel {
 // tops, and lean no further than the printer bridges their ceilings. Print orientation is that of
 // `packing.limits.roof`. Each connected set of voids that is large enough gets an escape hole for print
 // orientation, low and where it shows little, and one for the model upside down. From the low hole a flood in
-// order of height (pools.h) makes the spanning tree: each void is joined so that its liquid has to rise least
+// order of height (flood.h) makes the spanning tree: each void is joined so that its liquid has to rise least
 // to run out. While more than a hundredth of the voids' volume stays after both orientations, the largest
 // pools get holes of their own (unless both holes were asked for), then channels beside the tree, and at last
 // branches of which too much would stay full are left out.

@@ -1,11 +1,16 @@
 #include "packing/pools.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <queue>
+#include <tbb/parallel_invoke.h>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "packing/tube_through.h"
 
@@ -56,6 +61,53 @@ double upright_volume_below(const Roof& roof, double radius, double height) {
   return of_ball + std::numbers::pi / 3 * rise * (wide * wide + wide * narrow + narrow * narrow);
 }
 
+// Heights above which liquid runs into a channel at its ends.
+struct ChannelFloors {
+  double start, end;
+};
+
+std::vector<ChannelFloors> floors_of_channels(std::span<const Sphere> spheres, const DrainagePlan& plan,
+                                              Vec3d up) {
+  std::vector<ChannelFloors> floors;
+  floors.reserve(plan.channels.size());
+  for (const Channel& channel : plan.channels)
+    floors.push_back({opening_floor(channel.tube, TubeEnd::start, spheres[channel.from], up),
+                      opening_floor(channel.tube, TubeEnd::end, spheres[channel.to], up)});
+  return floors;
+}
+
+SpillHeights spill_heights_over(std::span<const ChannelFloors> floors, std::span<const Sphere> spheres,
+                                const DrainagePlan& plan, Vec3d up) {
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> ways(spheres.size());
+  for (std::size_t i = 0; i < plan.channels.size(); ++i) {
+    const Channel& channel = plan.channels[i];
+    const double sill = std::max(floors[i].start, floors[i].end);
+    ways[channel.from].push_back({channel.to, sill});
+    ways[channel.to].push_back({channel.from, sill});
+  }
+  SpillHeights spills;
+  spills.height.assign(spheres.size(), kInfinity);
+  spills.towards.assign(spheres.size(), kOutside);
+  using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, ball, towards
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
+  for (const EscapeHole& hole : plan.holes)
+    open.push({sill_of_hole(hole, spheres[hole.from], up), hole.from, kOutside});
+  std::vector<bool> done(spheres.size(), false);
+  while (!open.empty()) {
+    const auto [height, ball, towards] = open.top();
+    open.pop();
+    if (done[ball]) continue;
+    done[ball] = true;
+    spills.height[ball] = height;
+    spills.towards[ball] = towards;
+    spills.order.push_back(ball);
+    for (const auto& [next, sill] : ways[ball]) {
+      if (!done[next]) open.push({std::max(height, sill), next, ball});
+    }
+  }
+  return spills;
+}
+
 // What stays in one orientation, by ball and by channel, mm3.
 struct Pools {
   std::vector<double> of_ball, of_channel;
@@ -68,19 +120,32 @@ struct Pools {
   }
 };
 
-Pools find_pools(std::span<const Sphere> spheres, const DrainagePlan& plan, const SpillHeights& spills,
-                 Vec3d up) {
+Pools find_pools(std::span<const ChannelFloors> floors, std::span<const Sphere> spheres,
+                 const DrainagePlan& plan, const SpillHeights& spills, Vec3d up) {
   Pools pools;
   for (std::size_t i = 0; i < spheres.size(); ++i)
     pools.of_ball.push_back(volume_below(plan.roof, spheres[i], up, spills.height[i]));
-  for (const Channel& channel : plan.channels) {
-    const double through_start = std::max(
-        opening_floor(channel.tube, TubeEnd::start, spheres[channel.from], up), spills.height[channel.from]);
-    const double through_end = std::max(opening_floor(channel.tube, TubeEnd::end, spheres[channel.to], up),
-                                        spills.height[channel.to]);
+  for (std::size_t i = 0; i < plan.channels.size(); ++i) {
+    const Channel& channel = plan.channels[i];
+    const double through_start = std::max(floors[i].start, spills.height[channel.from]);
+    const double through_end = std::max(floors[i].end, spills.height[channel.to]);
     pools.of_channel.push_back(tube_volume_below(channel.tube, up, std::min(through_start, through_end)));
   }
   return pools;
+}
+
+// One orientation.
+struct Orientation {
+  SpillHeights spills;
+  Pools pools;
+};
+
+Orientation look_at_orientation(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up) {
+  const std::vector<ChannelFloors> floors = floors_of_channels(spheres, plan, up);
+  Orientation found;
+  found.spills = spill_heights_over(floors, spheres, plan, up);
+  found.pools = find_pools(floors, spheres, plan, found.spills, up);
+  return found;
 }
 
 // What stays of the pools `left` when it runs out along `spills` and may fill `room` on its way.
@@ -129,44 +194,76 @@ double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double he
 }
 
 SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up) {
-  std::vector<std::vector<std::pair<std::uint32_t, double>>> ways(spheres.size());
-  for (const Channel& channel : plan.channels) {
-    const double sill = sill_of(channel.tube, spheres[channel.from], spheres[channel.to], up);
-    ways[channel.from].push_back({channel.to, sill});
-    ways[channel.to].push_back({channel.from, sill});
+  return spill_heights_over(floors_of_channels(spheres, plan, up), spheres, plan, up);
+}
+
+std::vector<Pool> upright_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
+  const SpillHeights spills = spill_heights(spheres, plan, plan.roof.up);
+  std::vector<std::uint32_t> root_of(spheres.size(), kOutside);
+  std::map<std::uint32_t, Pool> pool_of;
+  for (const std::uint32_t i : spills.order) {
+    const std::uint32_t next = spills.towards[i];
+    root_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? root_of[next] : i;
+    Pool& pool = pool_of[root_of[i]];
+    pool.volume += volume_below(plan.roof, spheres[i], plan.roof.up, spills.height[i]);
+    pool.voids.push_back(i);
   }
-  SpillHeights spills;
-  spills.height.assign(spheres.size(), kInfinity);
-  spills.towards.assign(spheres.size(), kOutside);
-  using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, ball, towards
-  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
-  for (const EscapeHole& hole : plan.holes)
-    open.push({sill_of_hole(hole, spheres[hole.from], up), hole.from, kOutside});
-  std::vector<bool> done(spheres.size(), false);
-  while (!open.empty()) {
-    const auto [height, ball, towards] = open.top();
-    open.pop();
-    if (done[ball]) continue;
-    done[ball] = true;
-    spills.height[ball] = height;
-    spills.towards[ball] = towards;
-    spills.order.push_back(ball);
-    for (const auto& [next, sill] : ways[ball]) {
-      if (!done[next]) open.push({std::max(height, sill), next, ball});
+  std::vector<Pool> pools;
+  pools.reserve(pool_of.size());
+  for (auto& [root, pool] : pool_of) pools.push_back(std::move(pool));
+  std::stable_sort(pools.begin(), pools.end(),
+                   [](const Pool& a, const Pool& b) { return a.volume > b.volume; });
+  return pools;
+}
+
+std::vector<std::uint32_t> branch_of(std::uint32_t root, const SpillHeights& spills) {
+  std::vector<std::uint32_t> branch;
+  std::vector<bool> is_in_branch(spills.towards.size(), false);
+  for (const std::uint32_t i : spills.order) {
+    const std::uint32_t next = spills.towards[i];
+    if (i != root && (next == kOutside || !is_in_branch[next])) continue;
+    is_in_branch[i] = true;
+    branch.push_back(i);
+  }
+  return branch;
+}
+
+std::uint32_t fullest_branch(std::span<const Sphere> spheres, const DrainagePlan& plan,
+                             const SpillHeights& spills, std::span<const std::uint32_t> kept, double least) {
+  std::vector<double> whole(spheres.size(), 0), full(spheres.size(), 0);
+  for (const std::uint32_t i : spills.order) {
+    whole[i] = void_volume(plan.roof, spheres[i].radius);
+    full[i] = volume_below(plan.roof, spheres[i], plan.roof.up, spills.height[i]);
+  }
+  std::vector<bool> has_hole(spheres.size(), false), is_kept(spheres.size(), false);
+  for (const EscapeHole& hole : plan.holes) has_hole[hole.from] = true;
+  for (const std::uint32_t i : kept) is_kept[i] = true;
+  std::array<std::uint32_t, 2> worst{kOutside, kOutside};  // without a hole, and with one
+  std::array<double, 2> most{least, least};
+  for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
+    const std::uint32_t i = *at, next = spills.towards[*at];
+    const std::size_t kind = has_hole[i] ? 1 : 0;
+    if (!is_kept[i] && full[i] > most[kind] * whole[i]) {
+      most[kind] = full[i] / whole[i];
+      worst[kind] = i;
     }
+    if (next == kOutside) continue;
+    whole[next] += whole[i];
+    full[next] += full[i];
+    has_hole[next] = has_hole[next] || has_hole[i];
+    is_kept[next] = is_kept[next] || is_kept[i];
   }
-  return spills;
+  return worst[0] != kOutside ? worst[0] : worst[1];
 }
 
 TrappedPools trapped_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
-  const SpillHeights upright = spill_heights(spheres, plan, plan.roof.up);
-  const SpillHeights turned = spill_heights(spheres, plan, -plan.roof.up);
-  const Pools left = find_pools(spheres, plan, upright, plan.roof.up);
-  const Pools room = find_pools(spheres, plan, turned, -plan.roof.up);
+  Orientation upright, turned;
+  tbb::parallel_invoke([&] { upright = look_at_orientation(spheres, plan, plan.roof.up); },
+                       [&] { turned = look_at_orientation(spheres, plan, -plan.roof.up); });
   TrappedPools pools;
-  pools.upright = left.sum();
-  pools.upside_down = room.sum();
-  pools.after_both = std::min(pools.upright, retained(left, room, plan, turned));
+  pools.upright = upright.pools.sum();
+  pools.upside_down = turned.pools.sum();
+  pools.after_both = std::min(pools.upright, retained(upright.pools, turned.pools, plan, turned.spills));
   for (const Sphere& ball : spheres) pools.total += void_volume(plan.roof, ball.radius);
   for (const Channel& channel : plan.channels) {
     pools.total += std::numbers::pi * channel.tube.radius * channel.tube.radius *

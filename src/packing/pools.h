@@ -28,6 +28,24 @@ double sill_of_hole(const EscapeHole& hole, const Sphere& ball, Vec3d up);
 // Volume of a void below a height along `up`, which is `roof.up` or the opposite; mm3.
 double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double height);
 
+// What stays in print orientation in voids that are one basin: of one spill height along a way out.
+struct Pool {
+  double volume = 0;  // mm3
+  std::vector<std::uint32_t> voids;
+};
+
+// The largest first.
+std::vector<Pool> upright_pools(std::span<const Sphere> spheres, const DrainagePlan& plan);
+
+// A branch is a void with all that drains through it; each comes after the void that it drains into.
+std::vector<std::uint32_t> branch_of(std::uint32_t root, const SpillHeights& spills);
+
+// The root of the branch of which the largest share stays full in print orientation, more than `least`, where
+// the spill heights are `spills`; one with an escape hole only if there is no other, and one that holds any
+// of the voids `kept` never. kOutside if there is none.
+std::uint32_t fullest_branch(std::span<const Sphere> spheres, const DrainagePlan& plan,
+                             const SpillHeights& spills, std::span<const std::uint32_t> kept, double least);
+
 // What stays in full voids in print orientation, and of that after they have been turned upside down. The
 // latter is an upper bound: what a pool loses runs down its way out and fills what it meets there; what stays
 // in a channel is counted at both of its ends.

@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// A point this near to the surface is on it, mm: the facet there is found at once.
+constexpr double kOnSurface = 1e-6;
+
 // The nearest facet along a ray, for the walk of a hierarchy.
 struct RayMetric {
   Vec3d start, direction;
@@ -129,7 +132,8 @@ Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
 }
 
 Vec3d TubeClearance::normal_near(Vec3d point) const {
-  const kernels::NearestFacet nearest = bvh_.nearest(point, kInfinity);
+  kernels::NearestFacet nearest = bvh_.nearest(point, kOnSurface * kOnSurface);
+  if (nearest.facet == kernels::kNoFacet) nearest = bvh_.nearest(point, kInfinity);
   const kernels::Facet& facet = bvh_.facets[nearest.facet];
   const Vec3d a = to_double(facet.a);
   const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace aerate {
 namespace {
@@ -84,8 +85,10 @@ double opening_floor(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up
   const bool opens_at_lowest = length(to_lowest - axis * dot(to_lowest, axis)) <= tube.radius &&
                                (end == TubeEnd::start ? side > 0 : side < 0);
   if (opens_at_lowest) return dot(lowest, up);
+  static const std::vector<TubeLine> lines = tube_lines(kRimPoints);
+  const Rim rim(tube, end, ball, up);
   double floor = std::numeric_limits<double>::infinity();
-  for (const Vec3d p : ring_on_ball(tube, end, ball, up, kRimPoints)) floor = std::min(floor, dot(p, up));
+  for (const TubeLine line : lines) floor = std::min(floor, dot(rim.at(line), up));
   return floor;
 }
 

@@ -4,10 +4,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
 #include <vector>
 
 #include "core/segment_distance.h"
@@ -115,32 +120,59 @@ void require_remains_on_surface(const Mesh& read_back, const ExpectedDrained& ex
 struct EdgeCounts {
   std::size_t open = 0, misoriented = 0, non_manifold = 0;
   std::int64_t euler = 0;
+
+  EdgeCounts operator+(const EdgeCounts& other) const {
+    return {open + other.open, misoriented + other.misoriented, non_manifold + other.non_manifold,
+            euler + other.euler};
+  }
 };
 EdgeCounts count_edges(const Mesh& mesh, const EdgeUses& uses) {
-  EdgeCounts counts;
   std::vector<bool> is_used(mesh.positions.size(), false);
   for (const Triangle& t : mesh.triangles) {
     for (const std::uint32_t v : t) is_used[v] = true;
   }
-  counts.euler =
+  EdgeCounts without_edges;
+  without_edges.euler =
       std::count(is_used.begin(), is_used.end(), true) + static_cast<std::int64_t>(mesh.triangles.size());
-  for (std::size_t low = 0; low < uses.row_count(); ++low) {
-    uses.for_each_edge(low, [&](std::uint32_t from, std::uint32_t, std::span<const EdgeUse> edge) {
-      const EdgeBalance balance = balance_of(mesh, from, edge);
-      counts.open += balance.is_open() ? 1U : 0U;
-      counts.misoriented += balance.is_misoriented() ? 1U : 0U;
-      counts.non_manifold += balance.is_non_manifold() ? 1U : 0U;
-      --counts.euler;
-    });
-  }
-  return counts;
+  const auto add_edges = [&](const tbb::blocked_range<std::size_t>& rows, EdgeCounts counts) {
+    for (std::size_t low = rows.begin(); low != rows.end(); ++low) {
+      uses.for_each_edge(low, [&](std::uint32_t from, std::uint32_t, std::span<const EdgeUse> edge) {
+        const EdgeBalance balance = balance_of(mesh, from, edge);
+        counts.open += balance.is_open() ? 1U : 0U;
+        counts.misoriented += balance.is_misoriented() ? 1U : 0U;
+        counts.non_manifold += balance.is_non_manifold() ? 1U : 0U;
+        --counts.euler;
+      });
+    }
+    return counts;
+  };
+  return without_edges + tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, uses.row_count()),
+                                              EdgeCounts{}, add_edges, std::plus<>());
 }
 
-void require_sound_edges(const Mesh& read_back, const EdgeUses& uses, const ExpectedDrained& expected) {
-  const EdgeCounts counts = count_edges(read_back, uses);
+// What is found out about edges and shells as wholes.
+struct Topology {
+  EdgeCounts edges, edges_of_model;
+  ShellLabels labels;
+  std::vector<Shell> shells;
+};
+Topology find_topology(const Mesh& read_back, const Mesh& model) {
+  Topology topology;
+  const EdgeUses uses(read_back);
+  tbb::parallel_invoke([&] { topology.edges = count_edges(read_back, uses); },
+                       [&] { topology.edges_of_model = count_edges(model, EdgeUses(model)); },
+                       [&] {
+                         topology.labels = label_shells(read_back, uses);
+                         topology.shells = describe_shells(read_back, topology.labels);
+                       });
+  return topology;
+}
+
+void require_sound_edges(const Topology& topology, const ExpectedDrained& expected) {
+  const EdgeCounts& counts = topology.edges;
+  const EdgeCounts& model = topology.edges_of_model;
   if (counts.open > 0) fail_check("it has {} open edges", counts.open);
   if (counts.misoriented > 0) fail_check("it has {} misoriented edges", counts.misoriented);
-  const EdgeCounts model = count_edges(expected.model, EdgeUses(expected.model));
   if (counts.non_manifold > model.non_manifold)
     fail_check("it has {} non-manifold edges, the model has {}", counts.non_manifold, model.non_manifold);
   // A void adds a sphere (2); a tube takes a disc at either end (-2), and is a cylinder (0).
@@ -154,14 +186,13 @@ void require_sound_edges(const Mesh& read_back, const EdgeUses& uses, const Expe
 
 // Shells with inner surface that are inward, so that nothing joins them to the outside; and holes that open
 // into a cavity of the model.
-std::size_t count_sealed(const Mesh& read_back, const EdgeUses& uses, const ExpectedDrained& expected) {
-  const ShellLabels labels = label_shells(read_back, uses);
-  const std::vector<Shell> shells = describe_shells(read_back, labels);
+std::size_t count_sealed(const Mesh& read_back, const Topology& topology, const ExpectedDrained& expected) {
+  const ShellLabels& labels = topology.labels;
   std::vector<bool> is_sealed(labels.count, false);
   for (std::size_t i = expected.solid.outer_triangle_count; i < read_back.triangles.size(); ++i) {
     const std::uint32_t label = labels.of_triangle[i];
     if (label == kNoShell) fail_check("triangle {} belongs to no shell", i);
-    if (shells[label].volume <= 0) is_sealed[label] = true;
+    if (topology.shells[label].volume <= 0) is_sealed[label] = true;
   }
   const OutwardShells outward(expected.model, expected.inspection, expected.surface);
   const auto is_shut_in = [&](const EscapeHole& hole) {
@@ -173,16 +204,18 @@ std::size_t count_sealed(const Mesh& read_back, const EdgeUses& uses, const Expe
 }
 
 void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
-  for (std::size_t i = 0; i < plan.holes.size(); ++i) {
+  std::vector<SelfIntersections> crossings(plan.holes.size());
+  tbb::parallel_for(std::size_t{0}, plan.holes.size(), [&](std::size_t i) {
     const Tube& tube = plan.holes[i].tube;
-    const Mesh part =
-        part_of(read_back, triangles_near(read_back, cut_of(tube), tube.radius + kNeighbourhood));
-    const SelfIntersections found = find_self_intersections(part);
-    if (found.pair_count == 0) continue;
-    const Vec3d place = found.places.front();
+    crossings[i] = find_self_intersections(
+        part_of(read_back, triangles_near(read_back, cut_of(tube), tube.radius + kNeighbourhood)));
+  });
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    if (crossings[i].pair_count == 0) continue;
+    const Vec3d place = crossings[i].places.front();
     fail_check(
         "{} pairs of triangles intersect at escape hole {}, the first near ({:.3f}, {:.3f}, {:.3f}) mm",
-        found.pair_count, i, place.x, place.y, place.z);
+        crossings[i].pair_count, i, place.x, place.y, place.z);
   }
 }
 
@@ -312,10 +345,10 @@ OutputFacts check_drained(const Mesh& read_back, const ExpectedDrained& expected
                expected.limits.wall);
   monitor.check_interrupted();
 
-  const EdgeUses uses(read_back);
-  require_sound_edges(read_back, uses, expected);
+  const Topology topology = find_topology(read_back, expected.model);
+  require_sound_edges(topology, expected);
   monitor.check_interrupted();
-  drainage.sealed_cavities = count_sealed(read_back, uses, expected);
+  drainage.sealed_cavities = count_sealed(read_back, topology, expected);
   if (drainage.sealed_cavities > 0) fail_check("{} cavities are sealed", drainage.sealed_cavities);
   require_no_crossings(read_back, expected.plan);
   monitor.check_interrupted();

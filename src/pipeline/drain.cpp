@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <tbb/parallel_for.h>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -90,9 +91,14 @@ void require_resolvable(const Mesh& model, double radius, double tolerance, cons
 std::vector<std::size_t> failed_holes(const std::variant<OuterWithHoles, UncutHoles>& cut,
                                       const DrainagePlan& plan) {
   if (const auto* uncut = std::get_if<UncutHoles>(&cut)) return uncut->indices;
+  const auto& outer = std::get<OuterWithHoles>(cut);
+  std::vector<char> is_crossed(plan.holes.size(), 0);
+  tbb::parallel_for(std::size_t{0}, plan.holes.size(), [&](std::size_t i) {
+    is_crossed[i] = is_crossed_at(outer, i, plan.holes[i].tube) ? 1 : 0;
+  });
   std::vector<std::size_t> failed;
   for (std::size_t i = 0; i < plan.holes.size(); ++i) {
-    if (is_crossed_at(std::get<OuterWithHoles>(cut), i, plan.holes[i].tube)) failed.push_back(i);
+    if (is_crossed[i] != 0) failed.push_back(i);
   }
   return failed;
 }
@@ -121,7 +127,7 @@ PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surfa
         plan_drainage({surface, outward.winding()}, packing, request, can_open, monitor);
     std::vector<Sphere> kept;
     for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
-    auto cut = cut_holes(model.mesh, kept, planned.plan, {.tolerance = tolerance}, monitor);
+    auto cut = cut_holes(model.mesh, surface, kept, planned.plan, {.tolerance = tolerance}, monitor);
     const std::vector<std::size_t> failed = failed_holes(cut, planned.plan);
     if (!failed.empty()) {
       if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[failed.front()]);

@@ -12,6 +12,7 @@
 #include "core/segment_distance.h"
 #include "core/top_opening.h"
 #include "packing/adaptive.h"
+#include "packing/hole_places.h"
 #include "packing/plan_drainage.h"
 #include "packing/pools.h"
 #include "packing/tube_clearance.h"
@@ -187,6 +188,32 @@ TEST(TubeClearances, WhereARayMeetsTheSurface) {
   EXPECT_NEAR(clearance.first_hit({20, 21, 12}, {0.6, 0, 0.8}, 50).value(), 20 / 0.6, 1e-9);
   EXPECT_FALSE(clearance.first_hit({20, 21, 12}, {0, 0, -1}, 11).has_value());
   EXPECT_FALSE(clearance.first_hit({20, 21, 50}, {0, 0, 1}, 100).has_value());
+}
+
+TEST(HolePlaces, ComeInOrderBeforeAllAreLookedAt) {
+  const Mesh box = test::make_box({0, 0, 0}, {60, 40, 40});
+  const std::vector<Sphere> spheres{ball({12, 20, 10}, 7), ball({30, 20, 14}, 8), ball({48, 18, 26}, 9)};
+  const PackingLimits limits{.wall = 2, .gap = 1, .min_radius = 1, .max_radius = 9};
+  const DrainageRequest request{.channel_radius = 1, .hole_radius = 2, .escape_holes = {}};
+  const SurfaceIndex surface(box);
+  const TubeClearance clearance(surface, spheres, limits, 20, 2);
+  HolePlaces places(surface.winding(), spheres, limits, request, clearance);
+  const auto all = [&] {
+    std::vector<EscapeHole> holes;
+    HolePlaces::Ranking ranking = places.ranked(std::vector<std::uint32_t>{0, 1, 2}, {0, 0, -1}, 1);
+    while (const auto hole = ranking.next()) holes.push_back(*hole);
+    return holes;
+  };
+  const std::vector<EscapeHole> found = all();
+  const std::vector<EscapeHole> known = all();  // now every cost is known
+  ASSERT_FALSE(found.empty());
+  EXPECT_NEAR(found.front().tube.end.z, 0, 1e-9);
+  ASSERT_EQ(found.size(), known.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].from, known[i].from);
+    EXPECT_EQ(length_squared(found[i].tube.start - known[i].tube.start), 0);
+    EXPECT_EQ(length_squared(found[i].tube.end - known[i].tube.end), 0);
+  }
 }
 
 class PlanDrainage : public testing::Test {

@@ -64,7 +64,7 @@ class CarveDrained : public testing::Test {
   }
   std::optional<std::size_t> first_uncut(const Mesh& model) const {
     Monitor silent;
-    const auto cut = cut_holes(model, spheres_, plan_, {.tolerance = kTolerance}, silent);
+    const auto cut = cut_holes(model, model, spheres_, plan_, {.tolerance = kTolerance}, silent);
     const auto* const uncut = std::get_if<UncutHoles>(&cut);
     return uncut != nullptr ? std::optional(uncut->indices.front()) : std::nullopt;
   }

@@ -1,0 +1,91 @@
+#include "packing/flood.h"
+
+#include <algorithm>
+#include <map>
+#include <queue>
+#include <tuple>
+
+#include "packing/pools.h"
+#include "packing/tube_through.h"
+
+namespace aerate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The lowest first, then the shortest; the rest makes the order one of its own.
+struct ComesAfter {
+  bool operator()(const FloodStep& a, const FloodStep& b) const {
+    return std::tie(a.height, a.length, a.to, a.from, a.way) >
+           std::tie(b.height, b.length, b.to, b.from, b.way);
+  }
+};
+
+class Flood {
+ public:
+  Flood(const FloodedVoids& voids, Vec3d up) : voids_(voids), up_(up), channels_of_(voids.spheres.size()) {
+    for (const Channel& channel : voids.plan.channels) {
+      const double sill = sill_of(channel.tube, voids.spheres[channel.from], voids.spheres[channel.to], up);
+      channels_of_[channel.from].push_back({channel.to, sill});
+      channels_of_[channel.to].push_back({channel.from, sill});
+    }
+  }
+
+  std::vector<FloodStep> run(const std::function<bool(std::size_t)>& make) {
+    push_lowest_holes();
+    std::vector<FloodStep> steps(voids_.spheres.size(), {kInfinity, 0, kOutside, kOutside, kExistingChannel});
+    while (!queue_.empty()) {
+      const FloodStep next = queue_.top();
+      queue_.pop();
+      if (steps[next.to].to != kOutside) continue;
+      if (next.way != kExistingChannel && !make(next.way)) continue;
+      steps[next.to] = next;
+      push_ways(next.to, next.height);
+    }
+    return steps;
+  }
+
+ private:
+  struct ExistingChannel {
+    std::uint32_t to;
+    double sill;
+  };
+
+  void push_lowest_holes() {
+    std::map<std::uint32_t, const EscapeHole*> lowest_of;
+    for (const EscapeHole& hole : voids_.plan.holes) {
+      const EscapeHole*& lowest = lowest_of[hole.network];
+      if (lowest == nullptr || dot(hole.tube.end, up_) < dot(lowest->tube.end, up_)) lowest = &hole;
+    }
+    for (const auto& [network, hole] : lowest_of)
+      queue_.push(
+          {sill_of_hole(*hole, voids_.spheres[hole->from], up_), 0, hole->from, kOutside, kExistingChannel});
+  }
+
+  void push_ways(std::uint32_t from, double height) {
+    for (const auto& [to, sill] : channels_of_[from])
+      queue_.push({std::max(height, sill), 0, to, from, kExistingChannel});
+    const std::size_t orientation = dot(up_, voids_.plan.roof.up) > 0 ? 0 : 1;
+    for (const std::uint32_t index : voids_.ways.of(from)) {
+      const ChannelWay& way = voids_.ways[index];
+      const std::uint32_t to = way.other_than(from);
+      if (voids_.network_of[to] != voids_.network_of[from]) continue;
+      const Tube& tube = way.channel.tube;
+      queue_.push({std::max(height, way.sills[orientation]), length(tube.end - tube.start), to, from, index});
+    }
+  }
+
+  const FloodedVoids& voids_;
+  Vec3d up_;
+  std::vector<std::vector<ExistingChannel>> channels_of_;  // before the flood
+  std::priority_queue<FloodStep, std::vector<FloodStep>, ComesAfter> queue_;
+};
+
+}  // namespace
+
+std::vector<FloodStep> flood(const FloodedVoids& voids, Vec3d up,
+                             const std::function<bool(std::size_t)>& make) {
+  return Flood(voids, up).run(make);
+}
+
+}  // namespace aerate

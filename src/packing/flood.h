@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/drainage.h"
+#include "packing/channel_ways.h"
+
+namespace aerate {
+
+// The way along which the liquid of a void has to rise least to run out begins with this channel.
+struct FloodStep {
+  double height;           // that liquid has to reach
+  double length;           // of a channel that is not there yet
+  std::uint32_t to, from;  // the void, or kOutside if no way leads to it; and that before it, or kOutside
+  std::size_t way;         // of ChannelWays, or kExistingChannel
+};
+inline constexpr std::size_t kExistingChannel = std::numeric_limits<std::size_t>::max();
+
+struct FloodedVoids {
+  std::span<const Sphere> spheres;
+  std::span<const std::uint32_t> network_of;  // kOutside for those that are left out
+  const DrainagePlan& plan;                   // its holes and channels so far
+  const ChannelWays& ways;
+};
+
+// Finds those ways, by void, for all that can be reached from the lowest hole of their network, in order of
+// that height; `up` is against gravity. `make` is called for each channel that is not there yet and would be
+// the next; the flood takes it if that returns true.
+std::vector<FloodStep> flood(const FloodedVoids& voids, Vec3d up,
+                             const std::function<bool(std::size_t way)>& make);
+
+}  // namespace aerate
