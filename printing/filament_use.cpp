@@ -85,13 +85,14 @@ Pixels with_widened_walls(const Pixels& depths, const Layers& layers) {
   const int middle = layers.wall + layers.widened_walls / 2;
   const auto away = static_cast<std::size_t>(std::max(
       1.0, std::ceil((layers.rules.wall - layers.rules.fill + layers.rules.widened_walls) / raster.pixel)));
+  const double steps_per_pixel = kRise * raster.pixel / layers.step;
   for (std::size_t row = 0; row < raster.count_y; ++row) {
     for (std::size_t column = 0; column < raster.count_x; ++column) {
       const std::size_t at = row * raster.count_x + column;
       const int depth = depths[at];
       if (depth < layers.fill || depth >= middle) continue;
       const auto leads_to_the_middle = [&](std::size_t other, double distance) {
-        const int risen = depth + layers.steps(kRise * distance * raster.pixel);
+        const int risen = depth + static_cast<int>(steps_per_pixel * distance);
         return depths[other] >= middle && depths[other] >= std::min(1 + kSteps, risen);
       };
       if (!any_around(row, column, away, raster, leads_to_the_middle))
@@ -140,6 +141,7 @@ Pixels grown(const Pixels& seeds, double reach, const LayerRaster& raster) {
   const auto most = static_cast<std::ptrdiff_t>(reach_pixels);
   // Starts and ends of the runs that cover each row, to be added up from left to right.
   std::vector<std::int32_t> change(static_cast<std::size_t>(rows * (columns + 1)), 0);
+  std::ptrdiff_t first_row = rows, last_row = -1;
   for (std::ptrdiff_t row = 0; row < rows; ++row) {
     const std::uint8_t* seed = seeds.data() + row * columns;
     for (std::ptrdiff_t start = 0; start < columns;) {
@@ -149,6 +151,8 @@ Pixels grown(const Pixels& seeds, double reach, const LayerRaster& raster) {
       }
       std::ptrdiff_t end = start;
       while (end < columns && seed[end] != 0) ++end;
+      first_row = std::min(first_row, std::max<std::ptrdiff_t>(0, row - most));
+      last_row = std::min(rows - 1, row + most);
       for (std::ptrdiff_t dy = std::max(-most, -row); dy <= std::min(most, rows - 1 - row); ++dy) {
         const auto half = static_cast<std::ptrdiff_t>(
             std::sqrt(reach_pixels * reach_pixels - static_cast<double>(dy * dy)));
@@ -159,7 +163,7 @@ Pixels grown(const Pixels& seeds, double reach, const LayerRaster& raster) {
       start = end;
     }
   }
-  for (std::ptrdiff_t row = 0; row < rows; ++row) {
+  for (std::ptrdiff_t row = first_row; row <= last_row; ++row) {
     std::int32_t covered = 0;
     for (std::ptrdiff_t column = 0; column < columns; ++column) {
       covered += change[static_cast<std::size_t>(row * (columns + 1) + column)];
@@ -214,17 +218,26 @@ Pixels skins_of(const Layers& layers, std::size_t k, const PrintSettings& settin
   return flags;
 }
 
+// Pixel by pixel, all in vector registers: the vectors' own pointers might else be what is written.
+template <typename Operation>
+void transform(Pixels& pixels, const Pixels& others, const Operation& operation) {
+  std::uint8_t* a = pixels.data();
+  const std::uint8_t* b = others.data();
+  const std::size_t count = pixels.size();
+  for (std::size_t i = 0; i < count; ++i) a[i] = operation(a[i], b[i]);
+}
+
 // What the layers above and below leave of a layer's infill.
 struct Cover {
   Pixels depths;  // least depth of the pixel in any of them, where infill begins at `fill` in this one
-  Pixels shaded;  // 1 in the shadow of what looks up or down
+  Pixels shaded;  // not 0 in the shadow of what looks up or down
 };
 
 Cover cover_of(const Layers& layers, const std::vector<Pixels>& skins, std::size_t k,
                const PrintSettings& settings) {
   const std::size_t pixels = layers.depths[k].size();
   Cover cover{Pixels(pixels, 1 + kSteps), Pixels(pixels, 0)};
-  const auto look = [&](std::ptrdiff_t direction, int count, SkinFlag shades) {
+  const auto look = [&](std::ptrdiff_t direction, int count, std::uint8_t shades) {
     for (int step = 1; step <= count; ++step) {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) + step * direction;
       if (at < 0 || at >= layers.count()) {
@@ -232,16 +245,20 @@ Cover cover_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
         return;
       }
       const Pixels& other = layers.depths[static_cast<std::size_t>(at)];
+      if (step < count) {  // the walls of the last one do not count
+        const Pixels& flags = skins[static_cast<std::size_t>(at)];
+        transform(cover.depths, other, [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
+        transform(cover.shaded, flags, [shades](std::uint8_t a, std::uint8_t b) {
+          return static_cast<std::uint8_t>(a | (b & shades));
+        });
+      }
+      if (step < count && layers.shadow <= layers.fill) continue;  // then they reach further than shadows
       const Pixels& before = layers.depths[static_cast<std::size_t>(at - direction)];
-      const Pixels& flags = skins[static_cast<std::size_t>(at)];
-      const bool walls_count = step < count;  // those of the last one do not
       for (std::size_t i = 0; i < pixels; ++i) {
+        const bool leans = before[i] > other[i] + layers.lean;
         const int shadowed = std::max(0, other[i] + layers.fill - layers.shadow);
-        const bool leans = other[i] != 0 && before[i] > other[i] + layers.lean;
-        std::uint8_t least = other[i] == 0 || walls_count ? other[i] : std::uint8_t{1 + kSteps};
-        if (leans && shadowed < least) least = static_cast<std::uint8_t>(shadowed);
-        cover.depths[i] = std::min(cover.depths[i], least);
-        if (walls_count && (flags[i] & shades) != 0) cover.shaded[i] = 1;
+        const int least = other[i] == 0 ? 0 : leans ? shadowed : 1 + kSteps;
+        cover.depths[i] = static_cast<std::uint8_t>(std::min<int>(cover.depths[i], least));
       }
     }
   };
@@ -324,36 +341,39 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer, cons
   const LayerRaster& raster = layers.raster;
   const ShellRules& rules = layers.rules;
   // Areas in pixels, lengths in sides of pixels.
-  double wall = 0, solid = 0, fill = 0, sparse = 0, skin_edge = 0, shade_edge = 0;
-  const auto meet = [&](std::size_t a, std::size_t b) {
-    if (layer.parts[a] != Part::sparse) return;
-    if (layer.parts[b] == Part::skin) skin_edge += 1;
-    if (layer.parts[b] == Part::shade) shade_edge += 1;
-  };
-  for (std::size_t row = 0; row < raster.count_y; ++row) {
-    for (std::size_t column = 0; column < raster.count_x; ++column) {
-      const std::size_t i = row * raster.count_x + column;
-      const Part part = layer.parts[i];
-      if (layers.is_wall(layers.depths[k][i])) wall += 1;
-      if (part == Part::skin || part == Part::shade || part == Part::shell) solid += 1;
-      if (part == Part::sparse) sparse += 1;
-      if (part != Part::outside && part != Part::wall) fill += 1;
-      if (column + 1 < raster.count_x) meet(i, i + 1), meet(i + 1, i);
-      if (row + 1 < raster.count_y) meet(i, i + raster.count_x), meet(i + raster.count_x, i);
+  std::size_t wall = 0, solid = 0, fill = 0, sparse = 0, skin_edge = 0, shade_edge = 0;
+  const auto is_sparse = [&](std::size_t i) { return layer.parts[i] == Part::sparse ? 1U : 0U; };
+  const std::size_t columns =
+      raster.count_x;  // the first and the last pixels of rows and columns are outside
+  for (std::size_t i = columns; i + columns < layer.parts.size(); ++i) {
+    const Part part = layer.parts[i];
+    if (part == Part::outside) continue;
+    if (layers.is_wall(layers.depths[k][i])) ++wall;
+    if (part == Part::wall) continue;
+    ++fill;
+    if (part == Part::sparse) ++sparse;
+    if (part == Part::shell) ++solid;
+    if (part == Part::skin || part == Part::shade) {
+      ++solid;
+      (part == Part::skin ? skin_edge : shade_edge) +=
+          is_sparse(i - 1) + is_sparse(i + 1) + is_sparse(i - columns) + is_sparse(i + columns);
     }
   }
   const double volume = raster.pixel * raster.pixel * raster.layer_height;
   // A curve of length L crosses L * 4 / pi / pixel sides of pixels, averaged over its directions (Cauchy,
   // Crofton).
   const double strip = kPi / 4 * raster.pixel * raster.layer_height;
-  const double edge = raster.pixel * raster.layer_height * layer.edge + strip * (skin_edge + shade_edge);
+  const double skin_strip = strip * static_cast<double>(skin_edge);
+  const double shade_strip = strip * static_cast<double>(shade_edge);
+  const double edge = raster.pixel * raster.layer_height * layer.edge + skin_strip + shade_strip;
   FilamentUse use;
-  use.wall_mm3 = volume * wall_density(settings) * wall;
-  use.solid_mm3 = volume * solid + strip * rules.widening * shade_edge;
-  use.sparse_mm3 = std::max(0.0, volume * sparse - strip * (rules.spacing / 2 * (skin_edge + shade_edge) +
-                                                            rules.widening * shade_edge));
+  use.wall_mm3 = volume * wall_density(settings) * static_cast<double>(wall);
+  use.solid_mm3 = volume * static_cast<double>(solid) + rules.widening * shade_strip;
+  use.sparse_mm3 =
+      std::max(0.0, volume * static_cast<double>(sparse) - rules.spacing / 2 * (skin_strip + shade_strip) -
+                        rules.widening * shade_strip);
   use.joined_mm3 = kJoinedShare * rules.spacing * edge;
-  use.rim_mm3 = volume * fill - use.solid_mm3 - use.sparse_mm3;
+  use.rim_mm3 = volume * static_cast<double>(fill) - use.solid_mm3 - use.sparse_mm3;
   return use;
 }
 

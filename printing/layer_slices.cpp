@@ -40,14 +40,6 @@ Point meet(Vec3d a, Vec3d b, double z) {
   return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
 }
 
-double squared_distance(double px, double py, double ax, double ay, double bx, double by) {
-  const double ex = bx - ax, ey = by - ay, dx = px - ax, dy = py - ay;
-  const double squared_length = ex * ex + ey * ey;
-  const double t = squared_length > 0 ? std::clamp((dx * ex + dy * ey) / squared_length, 0.0, 1.0) : 0.0;
-  const double rx = dx - t * ex, ry = dy - t * ey;
-  return rx * rx + ry * ry;
-}
-
 // Pixels whose centres lie in [lower, upper] along an axis: [first, last).
 std::pair<std::size_t, std::size_t> pixels_between(double lower, double upper, double origin, double pixel,
                                                    std::size_t count) {
@@ -160,25 +152,40 @@ void LayerSlicer::fill(const std::vector<Segment>& contour, LayerSlice& slice) c
 }
 
 void LayerSlicer::measure_depth(const std::vector<Segment>& contour, double reach, LayerSlice& slice) const {
-  const double reach_squared = reach * reach;
+  // In single precision and without branches, for pixels outside too: the inner loop is all that takes time.
+  const auto pixel = static_cast<float>(raster_.pixel);
   for (const Segment& s : contour) {
     const auto [x0, x1] = pixels_between(std::min(s.ax, s.bx) - reach, std::max(s.ax, s.bx) + reach,
                                          raster_.origin_x, raster_.pixel, raster_.count_x);
     const auto [y0, y1] = pixels_between(std::min(s.ay, s.by) - reach, std::max(s.ay, s.by) + reach,
                                          raster_.origin_y, raster_.pixel, raster_.count_y);
+    const auto ex = static_cast<float>(s.bx - s.ax), ey = static_cast<float>(s.by - s.ay);
+    const float squared_length = ex * ex + ey * ey;
+    const float inverse = squared_length > 0 ? 1 / squared_length : 0;
+    // From the segment's start to the first pixel's centre.
+    const auto offset = [&](double origin, std::size_t first, double start) {
+      return static_cast<float>(origin + (static_cast<double>(first) + 0.5) * raster_.pixel - start);
+    };
+    const float first_dx = offset(raster_.origin_x, x0, s.ax), first_dy = offset(raster_.origin_y, y0, s.ay);
+    const auto columns = static_cast<std::int32_t>(x1 - x0);
     for (std::size_t row = y0; row < y1; ++row) {
-      const double y = raster_.origin_y + (static_cast<double>(row) + 0.5) * raster_.pixel;
-      for (std::size_t column = x0; column < x1; ++column) {
-        const std::size_t at = row * raster_.count_x + column;
-        if (slice.inside[at] == 0) continue;
-        const double x = raster_.origin_x + (static_cast<double>(column) + 0.5) * raster_.pixel;
-        const double squared = squared_distance(x, y, s.ax, s.ay, s.bx, s.by);
-        // Squared until the end; see below.
-        if (squared < reach_squared) slice.depth[at] = std::min(slice.depth[at], static_cast<float>(squared));
+      const float dy = first_dy + static_cast<float>(row - y0) * pixel;
+      float* squared = slice.depth.data() + row * raster_.count_x + x0;
+      for (std::int32_t i = 0; i < columns; ++i) {
+        const float dx = first_dx + static_cast<float>(i) * pixel;
+        const float along = (dx * ex + dy * ey) * inverse;
+        const float t = std::min(std::max(along, 0.0F), 1.0F);
+        const float rx = dx - t * ex, ry = dy - t * ey;
+        squared[i] = std::min(squared[i], rx * rx + ry * ry);
       }
     }
   }
-  for (float& depth : slice.depth) depth = std::sqrt(depth);
+  const auto reach_squared = static_cast<float>(reach * reach);
+  for (std::size_t i = 0; i < slice.depth.size(); ++i) {
+    float& depth = slice.depth[i];
+    const bool is_near = slice.inside[i] != 0 && depth < reach_squared;
+    depth = is_near ? std::sqrt(depth) : std::numeric_limits<float>::infinity();
+  }
 }
 
 }  // namespace aerate
