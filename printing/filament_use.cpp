@@ -218,7 +218,8 @@ Pixels skins_of(const Layers& layers, std::size_t k, const PrintSettings& settin
   return flags;
 }
 
-// Pixel by pixel, all in vector registers: the vectors' own pointers might else be what is written.
+// Pixel by pixel. Through plain pointers, since bytes that are written might else be those of the vectors
+// themselves, and the loop would not be vectorized.
 template <typename Operation>
 void transform(Pixels& pixels, const Pixels& others, const Operation& operation) {
   std::uint8_t* a = pixels.data();
