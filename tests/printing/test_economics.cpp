@@ -11,17 +11,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-PrintSettings with_infill(double infill) {
-  PrintSettings settings;
-  settings.infill = infill;
-  return settings;
-}
-
-Mesh moved(Mesh mesh, Vec3f by) {
-  for (Vec3f& p : mesh.positions) p = p + by;
-  return mesh;
-}
-
 // A block with spherical voids on a line along x, `pitch` apart; its walls are 12 mm from them.
 Mesh block_with_voids(float radius, int count, float pitch) {
   const float margin = radius + 12;
@@ -56,7 +45,7 @@ TEST(Economics, ALoneVoidCostsTheSameByItsFormulaAndOnTheRaster) {
 }
 
 TEST(Economics, WhatNeighboursShareIsCountedOnce) {
-  const PrintSettings sparse = with_infill(0.15);
+  const PrintSettings sparse = PrintSettings{.infill = 0.15};
   const double alone = use_of_voids(2, 4, 30).volume_mm3(sparse);
   const double together = use_of_voids(2, 4, 4.9F).volume_mm3(sparse);
   EXPECT_GT(together, 0);
@@ -64,26 +53,26 @@ TEST(Economics, WhatNeighboursShareIsCountedOnce) {
 }
 
 TEST(Economics, VoidsSaveInASolidPrintAndCostInASparseOne) {
-  EXPECT_LT(use_of_voids(3, 1, 0).volume_mm3(with_infill(1)), 0);
-  EXPECT_GT(use_of_voids(3, 1, 0).volume_mm3(with_infill(0.15)), 0);
-  EXPECT_LT(use_of_voids(14, 1, 0).volume_mm3(with_infill(0.4)), 0);
+  EXPECT_LT(use_of_voids(3, 1, 0).volume_mm3(PrintSettings{.infill = 1}), 0);
+  EXPECT_GT(use_of_voids(3, 1, 0).volume_mm3(PrintSettings{.infill = 0.15}), 0);
+  EXPECT_LT(use_of_voids(14, 1, 0).volume_mm3(PrintSettings{.infill = 0.4}), 0);
 }
 
 TEST(Economics, TheBreakEvenRadiusFallsWithTheInfill) {
   double last = 1e9;
   for (const double infill : {0.05, 0.15, 0.3, 0.5, 0.8, 1.0}) {
-    const auto radius = break_even_radius(with_infill(infill));
+    const auto radius = break_even_radius(PrintSettings{.infill = infill});
     ASSERT_TRUE(radius.has_value());
     EXPECT_LT(*radius, last);
     last = *radius;
   }
   EXPECT_LT(last, 0.62);  // solid: every void that slicers keep
-  EXPECT_NEAR(*break_even_radius(with_infill(0.5)), 4.6, 0.5);
+  EXPECT_NEAR(*break_even_radius(PrintSettings{.infill = 0.5}), 4.6, 0.5);
   // More walls cost more.
-  PrintSettings thick = with_infill(0.5);
+  PrintSettings thick = PrintSettings{.infill = 0.5};
   thick.perimeters = 4;
-  EXPECT_GT(*break_even_radius(thick), *break_even_radius(with_infill(0.5)));
-  EXPECT_FALSE(break_even_radius(with_infill(0)).has_value());
+  EXPECT_GT(*break_even_radius(thick), *break_even_radius(PrintSettings{.infill = 0.5}));
+  EXPECT_FALSE(break_even_radius(PrintSettings{.infill = 0}).has_value());
 }
 
 TEST(Economics, AtTheBreakEvenInfillNothingIsSavedOrLost) {
@@ -105,11 +94,11 @@ TEST(Economics, SmallVoidsMakeAPrintLonger) {
   const FilamentUse whole{.wall_mm3 = 4000, .solid_mm3 = 2000, .joined_mm3 = 400, .sparse_mm3 = 40000};
   const FilamentUse hollow{.wall_mm3 = 12000, .solid_mm3 = 9000, .joined_mm3 = 1000, .sparse_mm3 = 8000};
   const std::vector<Sphere> voids(100, Sphere{{0, 0, 0}, 3, SphereKind::adaptive});
-  EXPECT_EQ(time_change(whole, hollow, voids, with_infill(0.15)), TimeChange::longer);
-  EXPECT_EQ(time_change(whole, whole, {}, with_infill(0.15)), TimeChange::same);
+  EXPECT_EQ(time_change(whole, hollow, voids, PrintSettings{.infill = 0.15}), TimeChange::longer);
+  EXPECT_EQ(time_change(whole, whole, {}, PrintSettings{.infill = 0.15}), TimeChange::same);
   FilamentUse less = whole;
   less.sparse_mm3 = 20000;
-  EXPECT_EQ(time_change(whole, less, {}, with_infill(1)), TimeChange::shorter);
+  EXPECT_EQ(time_change(whole, less, {}, PrintSettings{.infill = 1}), TimeChange::shorter);
 }
 
 }  // namespace

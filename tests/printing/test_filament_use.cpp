@@ -11,17 +11,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-PrintSettings with_infill(double infill) {
-  PrintSettings settings;
-  settings.infill = infill;
-  return settings;
-}
-
-Mesh moved(Mesh mesh, Vec3f by) {
-  for (Vec3f& p : mesh.positions) p = p + by;
-  return mesh;
-}
-
 // A block whose sides lean inwards, by `step` from one layer of 0.2 mm to the next; its bottom is a square.
 Mesh tapered_block(float side, float height, float step) {
   Mesh mesh = make_box({0, 0, 0}, {side, side, height});
@@ -37,7 +26,7 @@ Mesh tapered_block(float side, float height, float step) {
 TEST(FilamentUse, ABlockHasWallsSkinsAndInfillOfItsOwnSize) {
   const double side = 30;
   const Mesh block = make_box({0, 0, 0}, {30, 30, 30});
-  PrintSettings settings = with_infill(0.2);
+  PrintSettings settings = PrintSettings{.infill = 0.2};
   settings.pattern = InfillPattern::lines;
   const FilamentUse use = filament_use(block, settings);
   // Two loops at their middles, as a slicer lays them.
@@ -55,12 +44,12 @@ TEST(FilamentUse, ABlockHasWallsSkinsAndInfillOfItsOwnSize) {
   EXPECT_NEAR(use.joined_mm3, joints, 0.1 * joints);
   EXPECT_NEAR(use.volume_mm3(settings), use.wall_mm3 + use.solid_mm3 + use.joined_mm3 + 0.2 * use.sparse_mm3,
               1e-6);
-  EXPECT_NEAR(use.volume_mm3(with_infill(1)), side * side * side, 0.02 * side * side * side);
+  EXPECT_NEAR(use.volume_mm3(PrintSettings{.infill = 1}), side * side * side, 0.02 * side * side * side);
 }
 
 TEST(FilamentUse, WhereABlockLiesDoesNotMatter) {
   const Mesh block = make_box({0, 0, 0}, {30, 20, 10});
-  const PrintSettings settings = with_infill(0.3);
+  const PrintSettings settings = PrintSettings{.infill = 0.3};
   const double here = filament_use(block, settings).volume_mm3(settings);
   const double there = filament_use(moved(block, {123.4F, -56.7F, 8.9F}), settings).volume_mm3(settings);
   EXPECT_NEAR(there, here, 0.01 * here);
@@ -86,7 +75,7 @@ TEST(FilamentUse, TheNumberOfThreadsDoesNotMatter) {
 TEST(FilamentUse, AFaceAtTheMiddleOfALayerCountsAsItsTop) {
   for (const float height : {7.7F, 10.1F, 16.5F}) {
     SCOPED_TRACE(height);
-    const PrintSettings settings = with_infill(1);
+    const PrintSettings settings = PrintSettings{.infill = 1};
     const double printed = filament_use(make_box({0, 0, 0}, {20, 20, height}), settings).volume_mm3(settings);
     const double higher =
         filament_use(make_box({0, 0, 0}, {20, 20, height + 0.05F}), settings).volume_mm3(settings);
@@ -100,7 +89,7 @@ TEST(FilamentUse, AFaceAtTheMiddleOfALayerCountsAsItsTop) {
 }
 
 TEST(FilamentUse, WhatIsTooNarrowForInfillIsWall) {
-  const PrintSettings settings = with_infill(0.2);
+  const PrintSettings settings = PrintSettings{.infill = 0.2};
   const ShellRules rules = shell_rules(settings);
   const auto use_of_plate = [&](double thickness) {
     return filament_use(make_box({0, 0, 0}, {40, static_cast<float>(thickness), 20}), settings);
@@ -114,7 +103,7 @@ TEST(FilamentUse, WhatIsTooNarrowForInfillIsWall) {
 // Four layers further down, a wall that leans has moved by four steps: a shell of at least 1.05 spacings is
 // printed there, a narrower one is not.
 TEST(FilamentUse, ShellsAlongLeaningWallsHaveALeastWidth) {
-  PrintSettings settings = with_infill(0.2);
+  PrintSettings settings = PrintSettings{.infill = 0.2};
   settings.bottom_layers = 0;  // which would look the other way
   const ShellRules rules = shell_rules(settings);
   const double side = 60, height = 20, top_height = settings.top_layers * settings.layer_height;
@@ -134,7 +123,7 @@ TEST(FilamentUse, ShellsAlongLeaningWallsHaveALeastWidth) {
 // Steps of a gentle slope that leave infill free are skin, and that is 3 mm wider than what is free; a slope
 // a little steeper leaves none free.
 TEST(FilamentUse, AGentleSlopeThatLeavesInfillFreeIsSkin) {
-  PrintSettings settings = with_infill(0.2);
+  PrintSettings settings = PrintSettings{.infill = 0.2};
   settings.top_layers = 1;
   settings.bottom_layers = 0;
   const ShellRules rules = shell_rules(settings);

@@ -31,6 +31,11 @@ inline Mesh join(const Mesh& a, const Mesh& b) {
   return mesh;
 }
 
+inline Mesh moved(Mesh mesh, Vec3f by) {
+  for (Vec3f& p : mesh.positions) p = p + by;
+  return mesh;
+}
+
 // A torus about the z axis; `rings` x `sides` quads, each two triangles, outward.
 inline Mesh make_torus(double ring_radius, double tube_radius, std::uint32_t rings, std::uint32_t sides) {
   Mesh mesh;
