@@ -21,8 +21,13 @@ constexpr double kClearOfRing = 0.4;
 constexpr double kRingPhase = 0.3106;
 
 // What is above the ring is bent into a dome of this height, in radii: convex, so that edge flips find the
-// ring, and flat enough for the ring to be on the convex hull.
-constexpr double kDomeHeight = 0.02;
+// ring, and flat enough for the ring to be on the convex hull. For that its slope at the ring, which is twice
+// the height over the ring's radius, has to stay below the ball's own.
+double dome_height(double ring_angle) {
+  constexpr double kHighest = 0.02;
+  const double slope = std::tan(ring_angle);
+  return std::min(kHighest, slope * slope / 4);
+}
 
 std::size_t ring_size(double sagitta, const Roof& roof) {
   // A chord of the ring stays cosine^2 (1 - cos(pi / n)) below the cone.
@@ -91,6 +96,7 @@ class Cutter {
     const double margin = kClearOfRing * edge_length(ball.triangles.size());
     const double widest = ring_angle_ + margin;
     const double inner = std::max(ring_angle_ - margin, ring_angle_ / 2);
+    const double dome = dome_height(ring_angle_);
     std::vector<Vec3d> bent = ball.directions;
     kinds_.assign(bent.size(), Kind::below);
     for (std::size_t v = 0; v < bent.size(); ++v) {
@@ -101,7 +107,7 @@ class Cutter {
       const double slope = std::tan(angle * inner / widest);
       const double aside = std::hypot(bent[v].x, bent[v].y);
       const double share = slope / std::tan(ring_angle_);  // of the ring's radius, about
-      const double height = sine_ * (1 + kDomeHeight * (1 - share * share));
+      const double height = sine_ * (1 + dome * (1 - share * share));
       const double scale = aside > 0 ? height * slope / aside : 0;
       bent[v] = {bent[v].x * scale, bent[v].y * scale, height};
     }

@@ -45,8 +45,7 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
     const double other = hole(k + direction);
     return other > fill(k) ? other + rules.skin_margin : 0.0;
   };
-  const long reach =
-      std::lround(std::ceil(radius / h)) + std::max(settings.top_layers, settings.bottom_layers) + 1;
+  const long reach = std::lround(std::ceil(radius / h)) + std::max(rules.top_layers, rules.bottom_layers) + 1;
   FilamentUse use;
   for (long k = -reach; k < reach; ++k) {
     const double own = hole(k), start = fill(k);
@@ -62,13 +61,13 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
         if (step < count && skinned > 0) shaded = std::max(shaded, skinned + rules.shadow);
       }
     };
-    look(+1, settings.top_layers);
-    look(-1, settings.bottom_layers);
+    look(+1, rules.top_layers);
+    look(-1, rules.bottom_layers);
     double end = start;  // of what is solid
     const double shell = std::max(shaded, covered - start >= rules.least_shell ? covered : 0);
     if (shell > start) end = shell + rules.widening;
-    if (settings.top_layers > 0) end = std::max(end, skin(k, +1));
-    if (settings.bottom_layers > 0) end = std::max(end, skin(k, -1));
+    if (rules.top_layers > 0) end = std::max(end, skin(k, +1));
+    if (rules.bottom_layers > 0) end = std::max(end, skin(k, -1));
     if (end <= 0) continue;
     const double wall = own > 0 ? own + rules.wall : 0, sparse = end + half_line;
     use.wall_mm3 += h * wall_density(settings) * kPi * (wall * wall - own * own);
@@ -98,7 +97,7 @@ std::optional<double> break_even_radius(const PrintSettings& settings) {
 }
 
 std::optional<double> break_even_infill(double radius, const PrintSettings& settings) {
-  return break_even_infill(use_of_lone_void(radius / kCompanyShare, settings), settings);
+  return break_even_infill(use_of_lone_void(radius, settings), settings);
 }
 
 std::optional<double> break_even_infill(const FilamentUse& difference, const PrintSettings& settings) {

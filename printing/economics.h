@@ -17,7 +17,7 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings);
 // of 240 mm does. Packings without smaller voids than this take about the least filament.
 std::optional<double> break_even_radius(const PrintSettings& settings);
 
-// The infill (0..1) above which such a void of this radius saves filament; nothing if it never does.
+// The infill (0..1) above which a lone void of this radius saves filament; nothing if it never does.
 std::optional<double> break_even_infill(double radius, const PrintSettings& settings);
 
 // The infill (0..1) above which a change of this much saves filament; nothing if it never does.

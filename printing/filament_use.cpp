@@ -180,7 +180,7 @@ enum SkinFlag : std::uint8_t {
   kShadesAbove = 4,  // in those over it, as it looks down
 };
 
-Pixels skins_of(const Layers& layers, std::size_t k, const PrintSettings& settings) {
+Pixels skins_of(const Layers& layers, std::size_t k) {
   const Pixels& depths = layers.depths[k];
   Pixels flags(depths.size(), 0);
   // Infill that the next layer's contour leaves free, be it by less than a pixel.
@@ -211,10 +211,10 @@ Pixels skins_of(const Layers& layers, std::size_t k, const PrintSettings& settin
   const auto at = static_cast<std::ptrdiff_t>(k);
   // What looks down comes first: what looks up is trimmed by it.
   Pixels seeds;
-  if (settings.bottom_layers > 0) seeds = exposed(at - 1);
+  if (layers.rules.bottom_layers > 0) seeds = exposed(at - 1);
   if (!seeds.empty()) add(seeds, kShadesAbove, false);
-  if (settings.top_layers > 0) seeds = exposed(at + 1);
-  if (!seeds.empty() && settings.top_layers > 0) add(seeds, kShadesBelow, true);
+  if (layers.rules.top_layers > 0) seeds = exposed(at + 1);
+  if (!seeds.empty() && layers.rules.top_layers > 0) add(seeds, kShadesBelow, true);
   return flags;
 }
 
@@ -234,8 +234,7 @@ struct Cover {
   Pixels shaded;  // not 0 in the shadow of what looks up or down
 };
 
-Cover cover_of(const Layers& layers, const std::vector<Pixels>& skins, std::size_t k,
-               const PrintSettings& settings) {
+Cover cover_of(const Layers& layers, const std::vector<Pixels>& skins, std::size_t k) {
   const std::size_t pixels = layers.depths[k].size();
   Cover cover{Pixels(pixels, 1 + kSteps), Pixels(pixels, 0)};
   const auto look = [&](std::ptrdiff_t direction, int count, std::uint8_t shades) {
@@ -263,8 +262,8 @@ Cover cover_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
       }
     }
   };
-  look(+1, settings.top_layers, kShadesBelow);
-  look(-1, settings.bottom_layers, kShadesAbove);
+  look(+1, layers.rules.top_layers, kShadesBelow);
+  look(-1, layers.rules.bottom_layers, kShadesAbove);
   return cover;
 }
 
@@ -284,11 +283,10 @@ struct Parts {
   double edge = 0;  // of sparse infill along walls and shells, in sides of pixels
 };
 
-Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size_t k,
-               const PrintSettings& settings) {
+Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size_t k) {
   const LayerRaster& raster = layers.raster;
   const Pixels& depths = layers.depths[k];
-  const Cover cover = cover_of(layers, skins, k, settings);
+  const Cover cover = cover_of(layers, skins, k);
   // Of the shell between the layer's own walls and what the others cover, whatever side the pixel is on.
   const auto width = [&](std::size_t i) {
     if (depths[i] == 0) return 0;
@@ -402,10 +400,10 @@ FilamentUse filament_use(const Mesh& upright, const PrintSettings& settings, dou
   const Layers layers = layers_of(mesh, raster_of(mesh, pixel, settings.layer_height, kMostPixels), settings);
   const std::size_t count = layers.depths.size();
   std::vector<Pixels> skins(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) { skins[k] = skins_of(layers, k, settings); });
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) { skins[k] = skins_of(layers, k); });
   std::vector<FilamentUse> uses(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-    uses[k] = use_of(layers, k, parts_of(layers, skins, k, settings), settings);
+    uses[k] = use_of(layers, k, parts_of(layers, skins, k), settings);
   });
   FilamentUse total;
   for (const FilamentUse& use : uses) total = total + use;

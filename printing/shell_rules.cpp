@@ -1,5 +1,7 @@
 #include "printing/shell_rules.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace aerate {
@@ -11,7 +13,9 @@ constexpr double kSkinMargin = 3.0;
 constexpr double kShellSpacing = 1.05;  // spacings that shells are measured in
 constexpr double kLeastShell = 1.0;     // of those: it opens shells by half of this,
 constexpr double kGrownAgain = 0.8;     // and grows them by this
-constexpr double kLean = 0.2;           // line widths: it opens what looks up or down by half of this
+constexpr double kTopThickness = 0.7;   // mm, that solid layers have at least, if there are any
+constexpr double kBottomThickness = 0.5;
+constexpr double kLean = 0.2;  // line widths: it opens what looks up or down by half of this
 
 // Fitted to the slicer's figures for three of the six models that they are held against.
 constexpr double kWidenedWalls = 0.4;  // spacings
@@ -20,6 +24,13 @@ constexpr double kGyroidShare = 0.926;
 // Lines are printed side by side at less than their width, since their sides are round.
 double spacing_of(const PrintSettings& settings) {
   return settings.line_width - settings.layer_height * (1 - std::numbers::pi / 4);
+}
+
+// Solid layers of such a thickness at least.
+int solid_layers(int asked_for, double thickness, double layer_height) {
+  constexpr double kMost = 1000;  // more than any layer height that is printed asks for
+  if (asked_for == 0) return 0;
+  return std::max(asked_for, static_cast<int>(std::min(kMost, std::ceil(thickness / layer_height - 1e-4))));
 }
 
 }  // namespace
@@ -32,6 +43,8 @@ ShellRules shell_rules(const PrintSettings& settings) {
     rules.fill = rules.wall - kInfillOverlap * rules.spacing;
     rules.widened_walls = kWidenedWalls * rules.spacing;
   }
+  rules.top_layers = solid_layers(settings.top_layers, kTopThickness, settings.layer_height);
+  rules.bottom_layers = solid_layers(settings.bottom_layers, kBottomThickness, settings.layer_height);
   rules.lean = kLean * settings.line_width;
   rules.skin_margin = kSkinMargin;
   rules.shadow = kShellSpacing * rules.spacing;

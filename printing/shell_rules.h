@@ -16,6 +16,8 @@ struct ShellRules {
   double lean = 0;
   double skin_margin = 0;  // what looks up or down is printed so much wider than it is, into the infill
   double shadow = 0;       // and its shadow in the next layers is wider than it by this
+  int top_layers = 0;      // layers of a skin that looks up with its shadow, and of one that looks down:
+  int bottom_layers = 0;   // as many as asked for, or as make up the least thickness of the profiles
   double least_shell = 0;  // shells inside of the walls that are narrower are left out
   double widening = 0;     // others reach this far into sparse infill
 };

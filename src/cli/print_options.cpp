@@ -68,7 +68,7 @@ PrintOptions::PrintOptions(CLI::App& command) {
       ->check(number_between({}, 10, "mm"))
       ->type_name("MM");
   add("--layer-height", settings_.layer_height, "Height of a layer")
-      ->check(number_between({}, 10, "mm"))
+      ->check(number_between(0.01, 10, "mm"))
       ->type_name("MM");
   add("--top-layers", settings_.top_layers, "Solid layers under surfaces that look up")
       ->check(CLI::Range(0, 1000))

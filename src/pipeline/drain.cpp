@@ -48,9 +48,11 @@ std::string reasons(const UndrainedVoids& dropped, const DrainageRequest& reques
 
 // What is worth trying, where many voids have no way out for the holes' width.
 std::string what_would_reach_them(const UndrainedVoids& dropped, const DrainageRequest& request) {
-  if (2 * dropped.unopened < dropped.count() || request.escape_holes.size() >= 2) return {};
-  return fmt::format("; holes narrower than {:g} mm (--hole-diameter) find more places",
-                     2 * request.hole_radius);
+  const bool may_be_narrower = request.hole_radius > request.channel_radius;
+  if (!may_be_narrower || 2 * dropped.unopened < dropped.count() || request.escape_holes.size() >= 2)
+    return {};
+  return fmt::format("; narrower holes may find more places (--hole-diameter between {:g} and {:g} mm)",
+                     2 * request.channel_radius, 2 * request.hole_radius);
 }
 
 void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Monitor& monitor) {

@@ -136,6 +136,17 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --wall or --min-radius");
   }
+  if (request.method == PackingMethod::adaptive && request.pays_in) {
+    throw NothingToRemoveError(
+        fmt::format(
+            "{}: nothing would be saved: at {:g} % infill a void takes less filament than it saves only "
+            "above a radius of {:.2f} mm; with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near "
+            "{}, "
+            "but {}",
+            file, 100 * request.pays_in->infill, limits.min_radius, limits.wall, fitting, place,
+            limits.roof.shapes(fitting) ? "not with the roof that it needs" : "no such place was found"),
+        where_voids_pay(fitting, *request.pays_in));
+  }
   if (request.method == PackingMethod::adaptive && !limits.roof.shapes(limits.min_radius)) {
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near "

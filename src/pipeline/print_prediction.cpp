@@ -21,8 +21,13 @@ double rounded_up(double length) {
 
 std::string saving_infill(const std::optional<double>& infill) {
   if (!infill) return "save at no infill";
-  return fmt::format("save above {:.0f} % infill", std::ceil(in_percent(*infill)));
+  const double percent = std::ceil(in_percent(*infill));
+  if (percent >= 100) return "save only in a solid print";
+  return fmt::format("save above {:.0f} % infill", percent);
 }
+
+// Predictions are off by so much of the solid print at most (docs/economics.md).
+constexpr double kUncertain = 0.015;
 
 constexpr const char* kOtherWays =
     "--as modifiers -o MODEL.3mf makes them volumes of 0 % infill, which have no walls and save at any "
@@ -31,14 +36,18 @@ constexpr const char* kOtherWays =
 
 [[noreturn]] void refuse_all(const PackingLimits& limits, const PrintSettings& settings,
                              const std::optional<double>& least_radius) {
-  const std::string above =
-      least_radius ? fmt::format("above a radius of {:.1f} mm", *least_radius) : std::string("at no radius");
+  const std::string why = least_radius
+                              ? fmt::format(
+                                    "a void takes less filament than it saves only above a radius of "
+                                    "{:.1f} mm, since walls and skins are printed round it, and the "
+                                    "largest allowed is {:g} mm (--max-radius)",
+                                    *least_radius, limits.max_radius)
+                              : std::string(
+                                    "walls and skins round a void take more filament than it saves, "
+                                    "however large it is");
   throw NothingToRemoveError(
-      fmt::format(
-          "nothing would be saved: at {:g} % infill a void takes less filament than it saves only {}, since "
-          "walls and skins are printed round it, and the largest allowed is {:g} mm (--max-radius)",
-          in_percent(settings.infill), above, limits.max_radius),
-      where_voids_pay(limits.max_radius, settings));
+      fmt::format("nothing would be saved: at {:g} % infill {}", in_percent(settings.infill), why),
+      "where they fit, " + where_voids_pay(limits.max_radius, settings));
 }
 
 std::string change_in_words(const PrintPrediction& prediction) {
@@ -112,6 +121,12 @@ PrintPrediction predict_print(const Mesh& outer, const Solid& solid, const VoidP
           fmt::format("these voids {}; {}", saving_infill(prediction.break_even_infill), kOtherWays));
     }
     monitor.notice("the print becomes heavier: " + change_in_words(prediction));
+  } else if (prediction.described &&
+             prediction.filament_after_mm3 > (1 - kUncertain) * prediction.filament_before_mm3) {
+    monitor.notice(fmt::format(
+        "the print may become heavier: {} is predicted, to within {:g} points; `aerate slice` asks "
+        "your slicer",
+        change_in_words(prediction), in_percent(kUncertain)));
   }
   return prediction;
 }

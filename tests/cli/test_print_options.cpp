@@ -46,6 +46,22 @@ TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
   expect_refused(job, {"--infill", "15%", "--max-radius", "3.5"}, kNothing,
                  {"15 % infill", "above a radius of 18", "3.5 mm (--max-radius)",
                   "voids of 3.5 mm save above", "modifier", "--force"});
+  expect_refused(job, {"--infill", "20%"}, kNothing,
+                 {"20 % infill", "radius 13.8 mm fits", "not with the roof that it needs",
+                  "voids of 14 mm save above", "modifier", "--force"});
+  expect_refused(job, {"--infill", "0%"}, kNothing,
+                 {"0 % infill", "however large it is", "where they fit", "modifier", "--force"});
+}
+
+// Closer to no change than the prediction is to the slicer.
+TEST(PrintOptions, APrintThatMayBecomeHeavierIsSaidSo) {
+  const Job job;
+  const Json close = report_of(job, block(), {"--infill", "27"});
+  EXPECT_LT(close["print"]["filament_change_percent"].get<double>(), 0);
+  EXPECT_GT(close["print"]["filament_change_percent"].get<double>(), -1.5);
+  EXPECT_TRUE(contains(close["notices"].dump(), "may become heavier"));
+  const Json clear = report_of(job, block(), {"--infill", "50"});
+  EXPECT_FALSE(contains(clear["notices"].dump(), "may become heavier"));
 }
 
 TEST(PrintOptions, VoidsThatCostMoreThanTheySaveAreNotMade) {

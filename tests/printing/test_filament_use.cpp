@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <tbb/global_control.h>
@@ -120,19 +122,41 @@ TEST(FilamentUse, ShellsAlongLeaningWallsHaveALeastWidth) {
   }
 }
 
-// Steps of a gentle slope that leave infill free are skin, and that is 3 mm wider than what is free; a slope
-// a little steeper leaves none free.
+// Steps of a gentle slope that leave infill free are skin, 3 mm wider than what is free, which casts a shadow
+// on the layers below; a slope a little steeper leaves none free.
 TEST(FilamentUse, AGentleSlopeThatLeavesInfillFreeIsSkin) {
-  PrintSettings settings = PrintSettings{.infill = 0.2};
-  settings.top_layers = 1;
-  settings.bottom_layers = 0;
+  PrintSettings settings{.infill = 0.2, .top_layers = 5, .bottom_layers = 0};
   const ShellRules rules = shell_rules(settings);
-  const auto solid_of = [&](double step) {
-    return filament_use(tapered_block(80, 6, static_cast<float>(step)), settings).solid_mm3;
+  const double side = 80, height = 6, h = settings.layer_height;
+  for (const double step : {rules.fill - 0.05, rules.fill + 0.05}) {
+    SCOPED_TRACE(step);
+    const double solid = filament_use(tapered_block(80, 6, static_cast<float>(step)), settings).solid_mm3;
+    // Of each layer's ring, from where its infill begins.
+    const double skin = step > rules.fill ? rules.skin_margin : 0;
+    const double ring = settings.top_layers * step + skin + rules.shadow - rules.fill + rules.widening;
+    double expected = 0;
+    for (int k = 0; k < std::lround(height / h); ++k) {
+      const double outer = side - 2 * step * (k + 0.5) - 2 * rules.fill;
+      const bool is_top = k >= std::lround(height / h) - settings.top_layers;
+      const double inner = is_top ? 0 : std::max(0.0, outer - 2 * ring);
+      expected += h * (outer * outer - inner * inner);
+    }
+    EXPECT_NEAR(solid, expected, 0.05 * expected);
+  }
+}
+
+// As the slicer's profiles have it: at least 0.7 mm under what looks up and 0.5 mm over what looks down.
+TEST(FilamentUse, SolidLayersHaveALeastThickness) {
+  const Mesh block = make_box({0, 0, 0}, {30, 30, 20});
+  const auto solid_of = [&](int top, int bottom, double layer_height) {
+    const PrintSettings settings{
+        .infill = 0.2, .layer_height = layer_height, .top_layers = top, .bottom_layers = bottom};
+    return filament_use(block, settings).solid_mm3;
   };
-  const double none = solid_of(rules.fill - 0.05), skinned = solid_of(rules.fill + 0.05);
-  const double skin = 29 * 0.2 * 4 * 55 * rules.skin_margin;
-  EXPECT_NEAR(skinned - none, skin, 0.2 * skin);
+  EXPECT_EQ(solid_of(1, 1, 0.2), solid_of(4, 3, 0.2));
+  EXPECT_EQ(solid_of(5, 4, 0.1), solid_of(7, 5, 0.1));
+  EXPECT_LT(solid_of(4, 3, 0.2), solid_of(5, 3, 0.2));
+  EXPECT_EQ(solid_of(0, 0, 0.2), 0);
 }
 
 TEST(FilamentUse, NothingTakesNothing) {

@@ -183,7 +183,8 @@ TEST(RoofedVoids, SameBytesForAnyThreadCount) {
 
 TEST(CutBall, MostLevelsOfTheLadderCanBeCut) {
   BallLadder ladder;
-  for (const Roof& roof : {make_roof({}), make_roof({.degrees = 25}), make_roof({.degrees = 70})}) {
+  for (const Roof& roof : {make_roof({}), make_roof({.degrees = 25}), make_roof({.degrees = 70}),
+                           make_roof({.degrees = 82}), make_roof({.degrees = 86})}) {
     int cut = 0, all = 0;
     double worst = 0;
     for (std::size_t level = 0; level < 40; ++level) {
