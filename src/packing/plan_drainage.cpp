@@ -40,7 +40,7 @@ constexpr int kMostAttempts = 16;
 // Of the voids' volume: more holes and channels are made while more than this stays after both orientations,
 // at most so many holes, each for a pool of at least that size.
 constexpr double kPoolsAimedAt = 0.01;
-constexpr int kMostMoreHoles = 6;
+constexpr int kMostMoreHoles = 24;
 constexpr double kPoolWorthHole = 0.003;
 
 // More channels than the tree's have to reduce what stays to this share of it.
