@@ -49,8 +49,8 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
   FilamentUse use;
   for (long k = -reach; k < reach; ++k) {
     const double own = hole(k), start = fill(k);
-    double covered = 0,
-           shaded = 0;  // up to where the layers above and below leave nothing, or shade this one
+    // Up to where the layers above and below leave nothing, or shade this one.
+    double covered = 0, shaded = 0;
     const auto look = [&](long direction, int count) {
       for (int step = 1; step <= count; ++step) {
         const long at = k + step * direction;
@@ -70,7 +70,7 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
     if (rules.bottom_layers > 0) end = std::max(end, skin(k, -1));
     if (end <= 0) continue;
     const double wall = own > 0 ? own + rules.wall : 0, sparse = end + half_line;
-    use.wall_mm3 += h * wall_density(settings) * kPi * (wall * wall - own * own);
+    use.wall_mm3 += h * rules.wall_density * kPi * (wall * wall - own * own);
     use.solid_mm3 += h * kPi * (end * end - start * start);
     use.sparse_mm3 -= h * kPi * sparse * sparse;
     use.rim_mm3 += h * kPi * (sparse * sparse - end * end);

@@ -183,7 +183,7 @@ enum SkinFlag : std::uint8_t {
 Pixels skins_of(const Layers& layers, std::size_t k) {
   const Pixels& depths = layers.depths[k];
   Pixels flags(depths.size(), 0);
-  // Infill that the next layer's contour leaves free, be it by less than a pixel.
+  // Infill that the next layer's contour leaves free, be it by less than a pixel; empty if there is none.
   const auto exposed = [&](std::ptrdiff_t next) {
     Pixels seeds(depths.size(), 0);
     bool any = false;
@@ -198,23 +198,21 @@ Pixels skins_of(const Layers& layers, std::size_t k) {
     }
     return any ? seeds : Pixels{};
   };
-  const double inside = kNearest / 2 * layers.raster.pixel;
-  const double margin = layers.rules.skin_margin - inside;
-  const auto add = [&](const Pixels& seeds, SkinFlag shades, bool trimmed) {
+  const double margin = layers.rules.skin_margin - kNearest / 2 * layers.raster.pixel;
+  // Trimmed by what is skin already.
+  const auto add = [&](std::ptrdiff_t direction, SkinFlag shades) {
+    const Pixels seeds = exposed(static_cast<std::ptrdiff_t>(k) + direction);
+    if (seeds.empty()) return;
     const Pixels skin = grown(seeds, margin, layers.raster);
     const Pixels shadow = grown(seeds, margin + layers.rules.shadow, layers.raster);
     for (std::size_t i = 0; i < depths.size(); ++i) {
-      if (shadow[i] != 0 && !(trimmed && (flags[i] & kIsSkin) != 0)) flags[i] |= shades;
+      if (shadow[i] != 0 && (flags[i] & kIsSkin) == 0) flags[i] |= shades;
       if (skin[i] != 0 && layers.is_fill(depths[i])) flags[i] |= kIsSkin;
     }
   };
-  const auto at = static_cast<std::ptrdiff_t>(k);
-  // What looks down comes first: what looks up is trimmed by it.
-  Pixels seeds;
-  if (layers.rules.bottom_layers > 0) seeds = exposed(at - 1);
-  if (!seeds.empty()) add(seeds, kShadesAbove, false);
-  if (layers.rules.top_layers > 0) seeds = exposed(at + 1);
-  if (!seeds.empty() && layers.rules.top_layers > 0) add(seeds, kShadesBelow, true);
+  // What looks down goes before what looks up.
+  if (layers.rules.bottom_layers > 0) add(-1, kShadesAbove);
+  if (layers.rules.top_layers > 0) add(+1, kShadesBelow);
   return flags;
 }
 
@@ -336,14 +334,14 @@ Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
   return result;
 }
 
-FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer, const PrintSettings& settings) {
+FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
   const LayerRaster& raster = layers.raster;
   const ShellRules& rules = layers.rules;
   // Areas in pixels, lengths in sides of pixels.
   std::size_t wall = 0, solid = 0, fill = 0, sparse = 0, skin_edge = 0, shade_edge = 0;
   const auto is_sparse = [&](std::size_t i) { return layer.parts[i] == Part::sparse ? 1U : 0U; };
-  const std::size_t columns =
-      raster.count_x;  // the first and the last pixels of rows and columns are outside
+  // The first and the last pixels of rows and columns are outside.
+  const std::size_t columns = raster.count_x;
   for (std::size_t i = columns; i + columns < layer.parts.size(); ++i) {
     const Part part = layer.parts[i];
     if (part == Part::outside) continue;
@@ -366,7 +364,7 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer, cons
   const double shade_strip = strip * static_cast<double>(shade_edge);
   const double edge = raster.pixel * raster.layer_height * layer.edge + skin_strip + shade_strip;
   FilamentUse use;
-  use.wall_mm3 = volume * wall_density(settings) * static_cast<double>(wall);
+  use.wall_mm3 = volume * rules.wall_density * static_cast<double>(wall);
   use.solid_mm3 = volume * static_cast<double>(solid) + rules.widening * shade_strip;
   use.sparse_mm3 =
       std::max(0.0, volume * static_cast<double>(sparse) - rules.spacing / 2 * (skin_strip + shade_strip) -
@@ -402,9 +400,8 @@ FilamentUse filament_use(const Mesh& upright, const PrintSettings& settings, dou
   std::vector<Pixels> skins(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) { skins[k] = skins_of(layers, k); });
   std::vector<FilamentUse> uses(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-    uses[k] = use_of(layers, k, parts_of(layers, skins, k), settings);
-  });
+  tbb::parallel_for(std::size_t{0}, count,
+                    [&](std::size_t k) { uses[k] = use_of(layers, k, parts_of(layers, skins, k)); });
   FilamentUse total;
   for (const FilamentUse& use : uses) total = total + use;
   return total;

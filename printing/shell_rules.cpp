@@ -40,6 +40,7 @@ ShellRules shell_rules(const PrintSettings& settings) {
   rules.spacing = spacing_of(settings);
   if (settings.perimeters > 0) {
     rules.wall = settings.line_width / 2 + (settings.perimeters - 0.5) * rules.spacing;
+    rules.wall_density = settings.perimeters * rules.spacing / rules.wall;
     rules.fill = rules.wall - kInfillOverlap * rules.spacing;
     rules.widened_walls = kWidenedWalls * rules.spacing;
   }
@@ -51,12 +52,6 @@ ShellRules shell_rules(const PrintSettings& settings) {
   rules.least_shell = kLeastShell * kShellSpacing * rules.spacing;
   rules.widening = (kGrownAgain - kLeastShell / 2) * kShellSpacing * rules.spacing;
   return rules;
-}
-
-double wall_density(const PrintSettings& settings) {
-  if (settings.perimeters == 0) return 1;
-  const ShellRules rules = shell_rules(settings);
-  return settings.perimeters * rules.spacing / rules.wall;
 }
 
 double printed_share(const PrintSettings& settings) {

@@ -10,6 +10,7 @@ namespace aerate {
 struct ShellRules {
   double spacing = 0;        // between lines that lie side by side
   double wall = 0;           // from the contour to the inner edge of the walls
+  double wall_density = 1;   // material in walls, over the volume from the contour to there
   double fill = 0;           // from the contour to where infill begins: it overlaps the walls
   double widened_walls = 0;  // infill narrower than this is left to the walls, which are printed wider
   // Layers that look up or down lean if their contour moves by this much from one layer to the next.
@@ -22,9 +23,6 @@ struct ShellRules {
   double widening = 0;     // others reach this far into sparse infill
 };
 ShellRules shell_rules(const PrintSettings& settings);
-
-// Material in walls, over the volume from the contour to their inner edge.
-double wall_density(const PrintSettings& settings);
 
 // What is printed, by length of line and area, of the space that lines of sparse infill run through (0..1).
 double printed_share(const PrintSettings& settings);

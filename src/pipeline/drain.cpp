@@ -68,10 +68,6 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
         pools.after_both, 100 * pools.after_both / pools.total));
 }
 
-}  // namespace
-
-namespace {
-
 // Throws FailureError unless fp32 can hold the sides of such a tube anywhere in the model.
 void require_resolvable(const Mesh& model, double radius, double tolerance, const char* what) {
   constexpr double kStepsPerSide = 8;

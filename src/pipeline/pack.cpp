@@ -120,13 +120,19 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
                   limits.min_radius)
             : fmt::format("give a --wall well below {:.3g} mm", largest.radius));
   }
-  if (fitting < limits.min_radius && request.pays_in) {
+  const bool is_adaptive = request.method == PackingMethod::adaptive;
+  if (request.pays_in && (fitting < limits.min_radius || is_adaptive)) {
+    const std::string what_fits =
+        fitting < limits.min_radius
+            ? fmt::format("the largest that fits has radius {:.3g} mm, near {}", fitting, place)
+            : fmt::format("a sphere of radius {:.3g} mm fits near {}, but {}", fitting, place,
+                          limits.roof.shapes(fitting) ? "not with the roof that it needs"
+                                                      : "no such place was found");
     throw NothingToRemoveError(
         fmt::format(
             "{}: nothing would be saved: at {:g} % infill a void takes less filament than it saves only "
-            "above a radius of {:.2f} mm, and with a wall of {:.3g} mm the largest that fits has "
-            "radius {:.3g} mm, near {}",
-            file, 100 * request.pays_in->infill, limits.min_radius, limits.wall, fitting, place),
+            "above a radius of {:.2f} mm, and with a wall of {:.3g} mm {}",
+            file, 100 * request.pays_in->infill, limits.min_radius, limits.wall, what_fits),
         where_voids_pay(fitting, *request.pays_in));
   }
   if (fitting < limits.min_radius) {
@@ -136,25 +142,14 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --wall or --min-radius");
   }
-  if (request.method == PackingMethod::adaptive && request.pays_in) {
-    throw NothingToRemoveError(
-        fmt::format(
-            "{}: nothing would be saved: at {:g} % infill a void takes less filament than it saves only "
-            "above a radius of {:.2f} mm; with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near "
-            "{}, "
-            "but {}",
-            file, 100 * request.pays_in->infill, limits.min_radius, limits.wall, fitting, place,
-            limits.roof.shapes(fitting) ? "not with the roof that it needs" : "no such place was found"),
-        where_voids_pay(fitting, *request.pays_in));
-  }
-  if (request.method == PackingMethod::adaptive && !limits.roof.shapes(limits.min_radius)) {
+  if (is_adaptive && !limits.roof.shapes(limits.min_radius)) {
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near "
                     "{}, but no place was found for one of --min-radius {:.3g} mm",
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --min-radius or --wall");
   }
-  if (request.method == PackingMethod::adaptive) {
+  if (is_adaptive) {
     throw NothingToRemoveError(
         fmt::format(
             "{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near {}, "
