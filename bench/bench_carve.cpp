@@ -18,13 +18,13 @@
 #include <vector>
 
 #include "bench/surface_samples.h"
+#include "files/load.h"
+#include "files/write.h"
 #include "kernels/point_triangle.h"
 #include "kernels/triangle_bvh.h"
-#include "mesh/load.h"
 #include "printing/carve.h"
 #include "printing/remesh.h"
 #include "printing/shells.h"
-#include "printing/write.h"
 
 namespace {
 

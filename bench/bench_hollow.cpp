@@ -8,16 +8,16 @@
 
 #include "core/monitor.h"
 #include "core/void_plan.h"
+#include "files/load.h"
+#include "files/write.h"
 #include "kernels/hexagonal.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
 #include "mesh/inspect.h"
-#include "mesh/load.h"
 #include "packing/hexagonal.h"
 #include "packing/verify.h"
 #include "pipeline/hollow.h"
 #include "printing/remesh.h"
-#include "printing/write.h"
 
 // The whole job on a large model, stage by stage, and in the same run what it is measured against: the
 // pipeline one would write with OpenVDB alone, and packing without an index.

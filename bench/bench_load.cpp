@@ -12,9 +12,9 @@
 #include <limits>
 #include <vector>
 
-#include "mesh/file_check.h"
-#include "mesh/load.h"
-#include "mesh/weld.h"
+#include "files/file_check.h"
+#include "files/load.h"
+#include "files/weld.h"
 
 namespace {
 

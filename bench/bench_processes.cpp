@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/monitor.h"
+#include "files/load.h"
 #include "kernels/winding.h"
-#include "mesh/load.h"
 #include "packing/verify.h"
 #include "pipeline/hollow.h"
 #include "pipeline/process_choice.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "mesh/load.h"
+#include "files/load.h"
 
 namespace aerate::bench {
 namespace {

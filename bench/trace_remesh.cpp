@@ -24,9 +24,9 @@
 
 #include "bench/surface_samples.h"
 #include "core/mesh.h"
+#include "files/load.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/winding.h"
-#include "mesh/load.h"
 #include "printing/remesh.h"
 
 namespace {

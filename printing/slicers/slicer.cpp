@@ -8,9 +8,9 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "files/write.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/text_file.h"
-#include "printing/write.h"
 
 namespace aerate {
 namespace {

@@ -8,7 +8,7 @@
 #include "cli/process_options.h"
 #include "cli/terminal.h"
 #include "core/packing.h"
-#include "mesh/load.h"
+#include "files/load.h"
 #include "pipeline/options.h"
 
 namespace aerate::cli {

@@ -219,8 +219,8 @@ std::string to_json(const HollowReport& report) {
   json["surface"] = {{"mode", report.surface == OuterSurface::kept ? "kept" : "remeshed"},
                      {"voxel_mm", or_null(report.voxel_size)},
                      {"outer_deviation_mm", or_null(report.outer_deviation)}};
-  json["output"] = {{"path", output.path.string()},
-                    {"bytes", output.file_bytes},
+  json["output"] = {{"path", report.output_path.string()},
+                    {"bytes", report.output_bytes},
                     {"triangles", output.triangle_count},
                     {"outer_triangles", output.outer_triangle_count},
                     {"void_triangles", output.void_triangle_count}};

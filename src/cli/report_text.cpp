@@ -243,10 +243,10 @@ std::string to_text(const HollowReport& report) {
   add_drainage(lines, report);
   if (!report.modifiers) add_balance(lines, report);
   add_material(lines, report);
-  lines.add("output", "{}: {} ({} outside, {}), {}", output.path.filename().string(),
+  lines.add("output", "{}: {} ({} outside, {}), {}", report.output_path.filename().string(),
             count_of(output.triangle_count, "triangle", "triangles"), grouped(output.outer_triangle_count),
             report.surface == OuterSurface::kept ? "kept as they were" : "remeshed",
-            format_bytes(static_cast<double>(output.file_bytes)));
+            format_bytes(static_cast<double>(report.output_bytes)));
   if (report.voxel_size && report.outer_deviation) {
     lines.add("remeshed", "voxels of {:.3g} mm, at most {:.3g} mm from the model's surface",
               *report.voxel_size, *report.outer_deviation);

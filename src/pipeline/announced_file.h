@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/monitor.h"
-#include "printing/write.h"
+#include "files/write.h"
 
 namespace aerate {
 

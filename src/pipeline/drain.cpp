@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
+#include "check/check_drained.h"
+#include "check/outward_shells.h"
 #include "core/error.h"
-#include "pipeline/check_drained.h"
-#include "pipeline/outward_shells.h"
 #include "printing/carve_drained.h"
 #include "printing/cut_holes.h"
 #include "printing/tube_openings.h"

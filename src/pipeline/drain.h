@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <optional>
 
+#include "check/drainage_facts.h"
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "core/solid.h"
 #include "core/surface_index.h"
-#include "pipeline/drainage_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/prepare.h"
 #include "printing/cut_holes.h"

@@ -6,13 +6,13 @@
 #include <optional>
 #include <utility>
 
+#include "check/check_drained.h"
+#include "check/check_output.h"
 #include "core/error.h"
 #include "core/upright.h"
 #include "core/void_plan.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
-#include "pipeline/check_drained.h"
-#include "pipeline/check_output.h"
 #include "pipeline/drain.h"
 #include "pipeline/job_log.h"
 #include "pipeline/pack.h"
@@ -89,8 +89,8 @@ HollowReport write_to(AnnouncedFile& pending, const HollowedModel& hollowed, con
   report.modifiers = options.modifiers;
   const auto check = [&](const Mesh& written) {
     report.output = check_written(written, hollowed, report, monitor);
-    report.output.path = options.output;
-    report.output.file_bytes = std::filesystem::file_size(pending.file().path());
+    report.output_path = options.output;
+    report.output_bytes = std::filesystem::file_size(pending.file().path());
     if (!options.modifiers)
       report.balance = balance_of(hollowed.model.mesh, report.output, UprightFrame(report.limits.roof.up));
     if (report.balance.tips_over()) warn_of_tipping(report, monitor);

@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "core/error.h"
+#include "files/write.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/gcode_match.h"
 #include "printing/slicers/text_file.h"
-#include "printing/write.h"
 
 namespace aerate {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core/monitor.h"
-#include "mesh/load.h"
+#include "files/load.h"
 #include "pipeline/report.h"
 
 namespace aerate {

@@ -8,11 +8,11 @@
 #include "core/device.h"
 #include "core/drainage.h"
 #include "core/packing.h"
-#include "mesh/load.h"
+#include "files/load.h"
+#include "files/three_mf.h"
 #include "packing/adaptive.h"
 #include "pipeline/process_choice.h"
 #include "printing/print_settings.h"
-#include "printing/three_mf.h"
 
 namespace aerate {
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/roof.h"
+#include "files/sphere_table.h"
 #include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "packing/verify.h"
@@ -14,7 +15,6 @@
 #include "pipeline/budget.h"
 #include "pipeline/job_log.h"
 #include "pipeline/print_prediction.h"
-#include "pipeline/sphere_table.h"
 
 namespace aerate {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "core/mesh.h"
 #include "core/monitor.h"
+#include "files/load.h"
 #include "mesh/inspect.h"
-#include "mesh/load.h"
 #include "pipeline/options.h"
 #include "pipeline/report.h"
 #include "printing/remesh.h"

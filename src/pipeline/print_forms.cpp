@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/error.h"
-#include "mesh/load.h"
+#include "files/load.h"
+#include "files/write.h"
 #include "pipeline/hollow.h"
-#include "printing/write.h"
 
 namespace aerate {
 namespace {

@@ -6,12 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh.h"
+#include "check/drainage_facts.h"
+#include "check/output_facts.h"
 #include "core/packing.h"
 #include "mesh/inspect.h"
-#include "packing/verify.h"
-#include "pipeline/ceilings.h"
-#include "pipeline/drainage_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
 
@@ -30,40 +28,6 @@ struct InputFacts {
   std::string format;
   std::size_t part_count = 1;
   Inspection inspection;
-};
-
-enum class OuterSurface { kept, remeshed };
-
-// What was read back from the written file, and measured there. Lengths in mm, volumes in mm3.
-struct OutputFacts {
-  std::filesystem::path path;
-  std::size_t file_bytes = 0;
-  std::size_t triangle_count = 0;
-  std::size_t outer_triangle_count = 0;
-  std::size_t void_triangle_count = 0;
-  std::size_t void_count = 0;
-
-  // What a slicer fills: without the voids (the outer surface alone) and with them.
-  double volume_before = 0;
-  double volume_after = 0;
-  double volume_removed = 0;
-
-  // Each void's radius is that of the ball round its planned centre that, with its roof, holds its vertices.
-  double smallest_radius = 0;
-  double largest_radius = 0;
-  // Between those balls and the outer surface, and between each other: the real clearances are at least
-  // these.
-  Clearances clearances;
-  // Largest depth by which a void stays inside its planned shape.
-  double void_deviation = 0;
-
-  // Voids that were given a roof, and the ceilings of all; absent where ceilings are not limited.
-  std::size_t roof_count = 0;
-  std::optional<Ceilings> ceilings;
-
-  // Absent where parts of the model overlap: the surface integral would count the overlap twice.
-  std::optional<Vec3d> centre_of_mass_before;
-  std::optional<Vec3d> centre_of_mass_after;
 };
 
 // How a model stands, and how stiff it is left.
@@ -100,6 +64,8 @@ struct HollowReport {
   // of mass is then that of the model less the modifiers, not of a print.
   std::optional<ModifierOptions> modifiers;
 
+  std::filesystem::path output_path;
+  std::size_t output_bytes = 0;
   OutputFacts output;
   // Of voids that drain; absent where each is sealed.
   std::optional<DrainageFacts> drainage;

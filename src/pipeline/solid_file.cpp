@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/error.h"
-#include "pipeline/read_back.h"
-#include "printing/three_mf.h"
+#include "files/read_back.h"
+#include "files/three_mf.h"
 
 namespace aerate {
 

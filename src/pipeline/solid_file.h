@@ -7,9 +7,9 @@
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "core/solid.h"
+#include "files/write.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/options.h"
-#include "printing/write.h"
 
 namespace aerate {
 

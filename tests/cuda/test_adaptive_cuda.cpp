@@ -1,7 +1,7 @@
 #include <filesystem>
 
 #include "core/roof.h"
-#include "mesh/load.h"
+#include "files/load.h"
 #include "packing/adaptive.h"
 #include "tests/cuda/cuda_test.h"
 #include "tests/cuda/same_bits.h"

@@ -1,9 +1,9 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "files/load.h"
 #include "kernels/exec_cpu.h"
 #include "kernels/hexagonal_cuda.h"
-#include "mesh/load.h"
 #include "packing/hexagonal.h"
 #include "tests/cuda/cuda_test.h"
 #include "tests/cuda/same_bits.h"

@@ -1,7 +1,7 @@
 #include <filesystem>
 
+#include "files/load.h"
 #include "kernels/cuda_device.h"
-#include "mesh/load.h"
 #include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "tests/cuda/same_bits.h"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "files/load.h"
 #include "mesh/inspect.h"
-#include "mesh/load.h"
 #include "tests/support/shapes.h"
 
 namespace aerate {

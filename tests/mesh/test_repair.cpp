@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "files/load.h"
 #include "mesh/inspect.h"
-#include "mesh/load.h"
 #include "mesh/repair.h"
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"

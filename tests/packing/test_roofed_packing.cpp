@@ -6,8 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include "core/roof.h"
+#include "files/load.h"
 #include "kernels/roof_distance.h"
-#include "mesh/load.h"
 #include "packing/adaptive.h"
 #include "packing/verify.h"
 #include "tests/support/clearance.h"

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "core/error.h"
+#include "files/sphere_table.h"
 #include "pipeline/budget.h"
 #include "pipeline/job_log.h"
 #include "pipeline/material_choice.h"
 #include "pipeline/memory.h"
-#include "pipeline/sphere_table.h"
 #include "pipeline/thread_limit.h"
 #include "printing/carve.h"
 #include "tests/support/caught.h"

@@ -10,9 +10,9 @@
 
 #include "core/error.h"
 #include "core/roof.h"
+#include "files/load.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
-#include "mesh/load.h"
 #include "printing/level_set.h"
 #include "printing/remesh.h"
 #include "printing/shells.h"

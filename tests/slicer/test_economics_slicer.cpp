@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "printing/write.h"
+#include "files/write.h"
 #include "tests/support/files.h"
 #include "tests/support/process.h"
 #include "tests/support/shapes.h"

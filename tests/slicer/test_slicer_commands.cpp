@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "mesh/load.h"
+#include "files/load.h"
+#include "files/write.h"
 #include "printing/slicers/slicer.h"
-#include "printing/write.h"
 #include "tests/slicer/fake_slicer.h"
 #include "tests/slicer/slicing.h"
 #include "tests/support/caught.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "mesh/weld.h"
+#include "files/weld.h"
 
 namespace aerate::test {
 
