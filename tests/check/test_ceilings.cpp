@@ -8,6 +8,7 @@
 #include "core/roof.h"
 #include "core/upright.h"
 #include "printing/carve.h"
+#include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shells.h"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 Ceilings measure(const Mesh& inward, const Roof& roof) {
-  const ShellRange whole{0, inward.triangles.size(), 0, inward.positions.size()};
+  const SolidPart whole{PartKind::void_surface, 0, inward.triangles.size()};
   Monitor monitor;
   return measure_ceilings(inward, std::vector{whole}, roof, monitor);
 }
@@ -29,9 +30,9 @@ Mesh hole(Vec3f lower, Vec3f upper) {
 
 Ceilings measure_carved(const Sphere& sphere, const Roof& carved, const Roof& roof, double tolerance) {
   Monitor monitor;
-  const Solid solid = carve_keeping_surface(test::make_box({-50, -50, -50}, {50, 50, 50}), {{sphere}, carved},
-                                            {tolerance}, monitor);
-  return measure_ceilings(solid.mesh, solid.void_shells, roof, monitor);
+  const Solid solid = carve_keeping_surface(test::make_box({-50, -50, -50}, {50, 50, 50}),
+                                            test::packing_of({sphere}, carved), {tolerance}, monitor);
+  return measure_ceilings(solid.mesh, solid.of(PartKind::void_surface), roof, monitor);
 }
 
 TEST(Ceilings, OfABoxIsAsWideAsItsShorterSideWhateverIsUp) {
@@ -90,17 +91,17 @@ TEST(Ceilings, OfVoidsWithRoofsAreNoWiderThanTheBridge) {
 
 TEST(Ceilings, AreTheWidestOfAll) {
   Mesh boxes = hole({0, 0, 0}, {3, 9, 3});
-  std::vector<ShellRange> shells{{0, 12, 0, 8}};
+  std::vector<SolidPart> voids{{PartKind::void_surface, 0, 12}};
   for (const float width : {7.0F, 5.0F}) {
     const Mesh other = hole({20 * width, 0, 0}, {21 * width, width, 3});
-    shells.push_back({boxes.triangles.size(), 12, boxes.positions.size(), 8});
+    voids.push_back({PartKind::void_surface, boxes.triangles.size(), 12});
     const auto first = static_cast<std::uint32_t>(boxes.positions.size());
     boxes.positions.insert(boxes.positions.end(), other.positions.begin(), other.positions.end());
     for (const Triangle& t : other.triangles)
       boxes.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   }
   Monitor monitor;
-  const Ceilings ceilings = measure_ceilings(boxes, shells, make_roof({}), monitor);
+  const Ceilings ceilings = measure_ceilings(boxes, voids, make_roof({}), monitor);
   EXPECT_EQ(ceilings.count, 3U);
   EXPECT_NEAR(ceilings.widest, 7, 1e-3);
 }
