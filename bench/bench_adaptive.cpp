@@ -38,7 +38,7 @@ struct Case {
   std::string name;
   std::string file;
   PackingLimits limits;
-  AdaptiveOptions options{};
+  PackingStop options{};
   std::string target{};     // the least that was wanted
   double peer_voxel = 0;    // mm; 0 for no comparison
   std::string published{};  // ProtoSphere's density and time on an RTX A2000 (CGAL, pull request 9013)

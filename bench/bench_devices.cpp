@@ -10,7 +10,7 @@
 #include "core/monitor.h"
 #include "kernels/cuda_device.h"
 #include "packing/adaptive.h"
-#include "packing/device.h"
+#include "packing/device_choice.h"
 #include "packing/hexagonal.h"
 #include "tests/support/shapes.h"
 

@@ -10,7 +10,7 @@
 #include "core/void_plan.h"
 #include "files/load.h"
 #include "files/write.h"
-#include "kernels/hexagonal.h"
+#include "kernels/hexagonal_packing.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
 #include "mesh/inspect.h"

@@ -11,7 +11,7 @@
 #include "bench/containers.h"
 #include "bench/figures.h"
 #include "core/monitor.h"
-#include "kernels/hexagonal.h"
+#include "kernels/hexagonal_packing.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
 #include "packing/hexagonal.h"

@@ -168,7 +168,7 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
   constexpr int kMostSteps = 48;
   constexpr int kMostRestarts = 2;
   Vec3d p = anchor.point;
-  LocalMaximum best{p, -kUnbounded, limits.most};
+  LocalMaximum best{p, -kInfinity, limits.most};
   Clearance here = clearance_at(field, anchor, p, limits.most, limits.most);
   if (here.value >= limits.most) {
     best.value = here.value;

@@ -1,6 +1,5 @@
 #include "kernels/winding.h"
 
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -20,12 +19,8 @@ struct QueryWinding {
 }  // namespace
 
 Box3d bounding_box(View<const Facet> facets) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Box3f box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (std::size_t i = 0; i < facets.size; ++i) {
-    box.lower = min_of(box.lower, min_of(facets[i].a, min_of(facets[i].b, facets[i].c)));
-    box.upper = max_of(box.upper, max_of(facets[i].a, max_of(facets[i].b, facets[i].c)));
-  }
+  Box3f box = empty_box();
+  for (std::size_t i = 0; i < facets.size; ++i) box = united(box, box_of(facets[i]));
   return {to_double(box.lower), to_double(box.upper)};
 }
 

@@ -103,7 +103,7 @@ HollowReport write_to(AnnouncedFile& pending, const HollowedModel& hollowed, con
 
 HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   HollowReport report;
-  report.method = options.packing.method;
+  report.method = name_of_method(options.packing);
   report.tolerance_asked = options.tolerance;
   report.max_triangles = options.max_triangles;
   report.material = options.material;
