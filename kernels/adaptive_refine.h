@@ -88,9 +88,6 @@ class FourConstraints {
   AERATE_HD double greatest() const {
     return max_of(max_of(value_[0], value_[1]), max_of(value_[2], value_[3]));
   }
-  AERATE_HD double least() const {
-    return min_of(min_of(value_[0], value_[1]), min_of(value_[2], value_[3]));
-  }
   AERATE_HD bool any_artificial() const {
     return artificial_[0] || artificial_[1] || artificial_[2] || artificial_[3];
   }

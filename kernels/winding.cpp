@@ -6,17 +6,6 @@
 #include "kernels/exec_cpu.h"
 
 namespace aerate::kernels {
-namespace {
-
-struct QueryWinding {
-  WindingView winding;
-  View<const Vec3d> points;
-  View<int> numbers;
-
-  void operator()(std::size_t i) const { numbers[i] = winding.winding_number(points[i]); }
-};
-
-}  // namespace
 
 Box3d bounding_box(View<const Facet> facets) {
   Box3f box = empty_box();
@@ -48,14 +37,6 @@ HostWinding& HostWinding::operator=(HostWinding&&) noexcept = default;
 
 const WindingView& HostWinding::view() const {
   return impl_->index.view;
-}
-
-std::vector<int> HostWinding::winding_numbers(std::span<const Vec3d> points) const {
-  std::vector<int> numbers(points.size());
-  impl_->executor.for_each_index(
-      points.size(),
-      QueryWinding{impl_->index.view, {points.data(), points.size()}, {numbers.data(), numbers.size()}});
-  return numbers;
 }
 
 }  // namespace aerate::kernels

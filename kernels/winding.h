@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "kernels/cell_grid.h"
 #include "kernels/cell_references.h"
@@ -182,7 +181,7 @@ WindingIndex<Executor> build_winding_index(const Executor& executor, View<const 
 // Box of facets in host memory; empty (lower > upper) without any.
 Box3d bounding_box(View<const Facet> facets);
 
-// Winding numbers of many points with respect to one mesh, on all CPU threads, for host code.
+// Winding numbers with respect to one mesh, for host code.
 class HostWinding {
  public:
   HostWinding(std::span<const Vec3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
@@ -192,9 +191,8 @@ class HostWinding {
   HostWinding(HostWinding&&) noexcept;
   HostWinding& operator=(HostWinding&&) noexcept;
 
-  // For use in the caller's own loops; valid while this object lives.
+  // Valid while this object lives.
   const WindingView& view() const;
-  std::vector<int> winding_numbers(std::span<const Vec3d> points) const;
 
  private:
   struct Impl;

@@ -303,7 +303,7 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   auto order = executor.template allocate<std::uint32_t>(list.size());
   const std::size_t count =
       executor
-          .select(list.size(), TallyFound{found.view()},
+          .select(list.size(), TallyMarked{found.view()},
                   ListFound{searched.view(), found.view(), 0, candidates.view(), keys.view(), order.view()})
           .first;
   stages.candidates = bytes_at(executor, View<Candidate>{candidates.view().data, count});
@@ -406,7 +406,7 @@ std::pair<Bytes, Bytes> run_lattice(const Executor& executor, const Job& job, st
   executor.for_each_index(lattice.size(),
                           LatticeFit{packed.bvh.view, packed.winding.view, 0.5, lattice, 0, fits.view()});
   auto balls = executor.template allocate<Ball>(lattice.size());
-  const Tally total = executor.select(lattice.size(), TallyFitting{fits.view()},
+  const Tally total = executor.select(lattice.size(), TallyMarked{fits.view()},
                                       PlaceLattice{lattice, 0, fits.view(), 0.4, balls.view()});
   return {bytes_at(executor, fits.view()), bytes_at(executor, View<Ball>{balls.view().data, total.first})};
 }

@@ -19,8 +19,16 @@
 
 namespace aerate {
 namespace {
-struct PackerThatFailsOnCuda;
-}
+struct PackerThatFailsOnCuda {
+  using Input = kernels::PackerInput;
+  using Result = std::string;
+
+  template <typename Executor>
+  static std::string pack(const Executor& /*executor*/, const Input& /*input*/) {
+    return "cpu";
+  }
+};
+}  // namespace
 
 namespace kernels {
 template <>
@@ -62,16 +70,6 @@ class NoticeBoard : public Monitor {
 constexpr std::size_t kLeastForHexagonal = 120 << 10;
 constexpr std::size_t kLeastForAdaptive = 900 << 10;
 constexpr std::size_t kLeastForPieces = 1400 << 10;  // a longer job
-
-struct PackerThatFailsOnCuda {
-  using Input = kernels::PackerInput;
-  using Result = std::string;
-
-  template <typename Executor>
-  static std::string pack(const Executor& /*executor*/, const Input& /*input*/) {
-    return "cpu";
-  }
-};
 
 // Enough work for the model to choose the device.
 constexpr WorkEstimate kMuchWork{1e6, 0};
