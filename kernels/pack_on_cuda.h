@@ -12,11 +12,11 @@
 namespace aerate::kernels {
 
 template <typename Packer>
-typename Packer::Result pack_on_cuda(int device, const typename Packer::Input& input) {
+typename Packer::Result pack_on_cuda([[maybe_unused]] int device,
+                                     [[maybe_unused]] const typename Packer::Input& input) {
 #if defined(__CUDACC__)
   return Packer::pack(CudaExecutor(device), input);
 #else
-  static_cast<void>(device), static_cast<void>(input);
   throw CudaError(CudaError::Kind::no_device, kNoCuda, "run on the CPU");
 #endif
 }

@@ -12,15 +12,16 @@
 // What a packing asks of the shape of its voids, which is a template argument, so that balls do not pay for
 // roofs that they do not have. A void is told by a centre and a radius. A shape has
 //
-//   span(distance, radius)    how far apart centres of voids up to `radius` may be to come as near to each
-//                             other as balls whose centres are `distance` apart
-//   radius_beside(...)        the largest radius of a void at p that keeps the gap to one that is placed
-//   constraint_beside(...)    the same as a function that is easy to work with near p
-//   comes_nearer(...)         is the distance between two voids less than the gap, if their span does not
-//   tell? box_of_influence(...)     where a void may be of radius `reach` or less because of one that is
-//   placed may_touch(...)            whether that is so somewhere in a cell volume(radius)
+//   span(distance, radius)  how far apart voids up to `radius` must be to be no nearer to each other than
+//                           balls whose centres are `distance` apart
+//   radius_beside(...)      the largest radius of a void at p that keeps the gap to one that is placed
+//   constraint_beside(...)  that radius as a function that is easy to work with near p
+//   comes_nearer(...)       whether two voids within their span are nearer to each other than the gap
+//   box_of_influence(...)   holds every p beside which a placed void leaves a radius of `reach` or less
+//   may_touch(...)          whether there may be such a p in a cell
+//   volume(radius)
 //
-// and if it is no ball, what is different about the surface: adaptive_field.h asks a ball how far that is.
+// and for the surface either kIsBall, which asks how far it is, or the functions that RoofedShape has for it.
 
 namespace aerate::kernels {
 
