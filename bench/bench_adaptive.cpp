@@ -1,44 +1,40 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <exception>
 #include <filesystem>
 #include <fmt/format.h>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "bench/benchmark.h"
 #include "bench/figures.h"
 #include "bench/fill_with_spheres.h"
 #include "core/monitor.h"
 #include "core/packing.h"
+#include "core/surface_index.h"
 #include "files/load.h"
-#include "kernels/triangle_bvh.h"
-#include "kernels/winding.h"
+#include "kernels/constants.h"
 #include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "packing/sphere_pairs.h"
 
 // Adaptive packing: density, time and broken limits for each case, with OpenVDB's fillWithSpheres in the same
 // run, and what ProtoSphere's authors published beside both.
-// Usage: bench_adaptive [MODELS [REPETITIONS]] [--table FILE] [--summary FILE]; times are the least of the
-// repetitions. Exit status 1 if a sphere breaks a limit, or if a model is missing of which figures were to be
-// written.
+// Times are the least of the repetitions. Exit status 1 if a sphere breaks a limit, or if a model is missing
+// of which figures were to be written.
 
 namespace aerate::bench {
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+using kernels::kInfinity;
 constexpr DeviceRequest kCpu{DeviceRequest::Kind::cpu, 0};
 
 struct Case {
   std::string name;
   std::string file;
   PackingLimits limits;
-  AdaptiveOptions options{};
+  PackingStop options{};
   std::string target{};     // the least that was wanted
   double peer_voxel = 0;    // mm; 0 for no comparison
   std::string published{};  // ProtoSphere's density and time on an RTX A2000 (CGAL, pull request 9013)
@@ -49,17 +45,15 @@ struct Case {
 
 // Processor time beside the clock's: on a busy machine the clock says little.
 struct Time {
-  double seconds = kUnlimited;
-  double processor_seconds = kUnlimited;
+  double seconds = kInfinity;
+  double processor_seconds = kInfinity;
 };
 
 template <typename F>
 Time time_of(F f) {
-  const auto start = std::chrono::steady_clock::now();
   const std::clock_t processor_start = std::clock();
-  f();
-  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-          static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
+  const double seconds = seconds_of(f);
+  return {seconds, static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC};
 }
 
 struct Violations {
@@ -71,16 +65,14 @@ struct Violations {
 // `slack` is 0 for us; for the peer, what fp32 centres and radii explain.
 Violations count_violations(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
                             double slack) {
-  const kernels::HostTriangleBvh bvh(mesh.positions, mesh.triangles);
-  const kernels::HostWinding winding(mesh.positions, mesh.triangles);
+  const SurfaceIndex surface(mesh);
   std::vector<Vec3d> centres;
   for (const Sphere& sphere : spheres) centres.push_back(sphere.centre);
-  const std::vector<double> distances = bvh.distances(centres);
-  const std::vector<int> numbers = winding.winding_numbers(centres);
+  const std::vector<double> distances = surface.distances(centres);
   Violations violations;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     if (distances[i] - spheres[i].radius < limits.wall - slack) ++violations.wall;
-    if (numbers[i] != 1) ++violations.winding;
+    if (surface.winding().winding_number(centres[i]) != 1) ++violations.winding;
   }
   for (const SpherePair& pair : find_pairs_within(spheres, limits.gap)) {
     if (pair.gap < limits.gap - slack) ++violations.gap;
@@ -92,10 +84,6 @@ double density_of(const Mesh& mesh, std::span<const Sphere> spheres) {
   Packing packing;
   packing.spheres.assign(spheres.begin(), spheres.end());
   return 100 * total_volume(packing) / signed_volume(mesh);
-}
-
-std::string hundredths(double value) {
-  return fmt::format("{:.2f}", value);
 }
 
 std::string whole(std::size_t count) {
@@ -183,7 +171,7 @@ void add_dinosaurs(std::vector<Case>& list) {
        {Dinosaur{100, ">= 64 % in 0.2 s", "59.3 % in 0.77 s"},
         Dinosaur{1000, ">= 76 % in 0.5 s", "72.0 % in 4.8 s"},
         Dinosaur{10000, ">= 85 % in 3 s", "83.3 % in 34.7 s"}, Dinosaur{100000, "", ""}}) {
-    Case c{fmt::format("dino, {} spheres", whole(d.count)), "dino.off", {0, 0, 0, kUnlimited}};
+    Case c{fmt::format("dino, {} spheres", whole(d.count)), "dino.off", {0, 0, 0, kInfinity}};
     c.options.max_count = d.count;
     c.target = d.target;
     c.published = d.published;
@@ -198,7 +186,7 @@ std::vector<Case> cases() {
   add_dinosaurs(list);
   list.push_back({.name = "dragon 100 mm, wall 1.2, gap 0.8, r >= 1.5",
                   .file = "dragon-47k-100mm.stl",
-                  .limits = {1.2, 0.8, 1.5, kUnlimited},
+                  .limits = {1.2, 0.8, 1.5, kInfinity},
                   .target = ">= 33.5 % in 0.5 s",
                   .in_summary = "no more than 67.6 % is deeper than the wall"});
   list.push_back({.name = "the same by spheres of one size, r = 3",
@@ -210,7 +198,7 @@ std::vector<Case> cases() {
        {std::pair{0.2, ">= 84 %"}, std::pair{0.1, ">= 88.5 %"}, std::pair{0.05, ""}}) {
     list.push_back({.name = fmt::format("cube 10, r >= {}", least),
                     .file = "cube.stl",
-                    .limits = {0, 0, least, kUnlimited},
+                    .limits = {0, 0, least, kInfinity},
                     .target = target});
   }
   // The paper's cube by the ratio of the radii.
@@ -231,19 +219,17 @@ std::vector<Case> cases() {
   return list;
 }
 
-int run(const FigureArguments& arguments) {
-  const auto& others = arguments.others;
-  const int repetitions = others.size() > 1 ? std::max(std::atoi(others[1].c_str()), 1) : 1;
+int run(const Arguments& arguments) {
   Table table({"case", "spheres", "largest / smallest radius", "density %", "s", "processor s",
                "broken: walls, gaps, winding", "wanted", "ProtoSphere, published", "OpenVDB: spheres",
                "density %", "s", "surfaces it crossed", "its time / ours"});
-  Run run{others.empty() ? "../shared/models" : others[0], repetitions, table};
+  Run run{arguments.text(0, "../shared/models"), static_cast<int>(arguments.number(1, 1)), table};
   for (const Case& c : cases()) run_case(c, run);
   if (run.broken > 0) {
     fmt::print(stderr, "{} walls, gaps and winding numbers are broken\n", run.broken);
     return 1;
   }
-  if (run.missing > 0) return arguments.table_file.empty() && arguments.summary_file.empty() ? 0 : 1;
+  if (run.missing > 0) return arguments.wants_figures() ? 1 : 0;
   write_figures(arguments, table.markdown(), run.summary);
   return 0;
 }
@@ -251,9 +237,7 @@ int run(const FigureArguments& arguments) {
 }  // namespace
 }  // namespace aerate::bench
 
-int main(int argc, char** argv) try {
-  return aerate::bench::run(aerate::bench::parse_figure_arguments(argc, argv, 2));
-} catch (const std::exception& error) {
-  fmt::print(stderr, "bench_adaptive: {}\n", error.what());
-  return 2;
+int main(int argc, char** argv) {
+  return aerate::bench::run_benchmark(
+      argc, argv, {"[MODELS [REPETITIONS]]", 0, 2, aerate::bench::Tables::written}, aerate::bench::run);
 }

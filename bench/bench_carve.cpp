@@ -1,22 +1,17 @@
 // Figures of printing's stages: void surfaces against the least number of triangles, remeshed models against
 // the models, and writing.
-//
-//   bench_carve [VOXEL_SIZES MODEL.stl...]        VOXEL_SIZES in mm, as in 0.5,0.3,0.2
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fmt/core.h>
 #include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
+#include "bench/benchmark.h"
 #include "bench/surface_samples.h"
 #include "files/load.h"
 #include "files/write.h"
@@ -26,25 +21,10 @@
 #include "printing/remesh.h"
 #include "printing/shells.h"
 
+namespace aerate::bench {
 namespace {
 
-using namespace aerate;
-
 constexpr int kRepetitions = 5;
-
-template <typename F>
-double seconds(const F& f) {
-  const auto start = std::chrono::steady_clock::now();
-  f();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-template <typename F>
-double least_seconds(const F& f) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kRepetitions; ++i) least = std::min(least, seconds(f));
-  return least;
-}
 
 // The process's peak memory since `reset`, from Linux's accounting; 0 elsewhere.
 class PeakMemory {
@@ -101,8 +81,9 @@ void print_spheres() {
     }
     Monitor monitor;
     std::size_t triangles = 0;
-    const double time = least_seconds(
-        [&] { triangles = carve_keeping_surface({}, packing, {0.05}, monitor).mesh.triangles.size(); });
+    const double time = least_seconds(kRepetitions, [&] {
+      triangles = carve_keeping_surface({}, packing, {0.05}, monitor).mesh.triangles.size();
+    });
     fmt::print("{:10} {:12} {:10.3f}\n", count, triangles, time);
   }
 }
@@ -115,7 +96,7 @@ Deviation deviation(const Mesh& from, const Mesh& to) {
   const kernels::HostTriangleBvh bvh(to.positions, to.triangles);
   Deviation result;
   double squares = 0;
-  const std::vector<double> distances = bvh.distances(bench::sample_surface(from, 500'000).points);
+  const std::vector<double> distances = bvh.distances(sample_surface(from, 500'000).points);
   for (const double distance : distances) {
     result.largest = std::max(result.largest, distance);
     squares += distance * distance;
@@ -139,7 +120,7 @@ void print_remeshed(const std::string& path, const std::vector<double>& voxel_si
     const double before = PeakMemory::mebibytes();
     PeakMemory::reset();
     const double idle = PeakMemory::mebibytes();
-    const double time = seconds([&] {
+    const double time = seconds_of([&] {
       surface = ModelLevelSet(model, voxel_size, std::numeric_limits<double>::max(), monitor).surface();
     });
     const double peak = before > 0 ? PeakMemory::mebibytes() - idle : 0;
@@ -174,33 +155,32 @@ Mesh make_sheet() {
 
 void print_writing() {
   const Mesh mesh = make_sheet();
+  const ScratchFolder folder;
   fmt::print("\nWriting {} triangles (to the page cache, without flushing)\n\n{:>8} {:>10} {:>10}\n",
              mesh.triangles.size(), "format", "MB", "seconds");
   for (const char* ending : {".stl", ".obj", ".ply"}) {
-    const auto path =
-        std::filesystem::temp_directory_path() / ("bench_carve-" + std::to_string(::getpid()) + ending);
-    const double time = least_seconds([&] { write_mesh(mesh, path, mesh_format_of(path)); });
+    const std::filesystem::path path = folder.path() / (std::string("sheet") + ending);
+    const double time = least_seconds(kRepetitions, [&] { write_mesh(mesh, path, mesh_format_of(path)); });
     fmt::print("{:>8} {:10.1f} {:10.3f}\n", ending,
                static_cast<double>(std::filesystem::file_size(path)) / 1e6, time);
-    std::filesystem::remove(path);
   }
 }
 
+int run(const Arguments& arguments) {
+  std::vector<double> voxel_sizes;  // mm, as in 0.5,0.3,0.2
+  std::istringstream list(arguments.text(0, ""));
+  for (std::string size; std::getline(list, size, ',');) voxel_sizes.push_back(std::stod(size));
+  print_spheres();
+  for (std::size_t i = 1; i < arguments.positional.size(); ++i)
+    print_remeshed(arguments.positional[i], voxel_sizes);
+  print_writing();
+  return 0;
+}
+
 }  // namespace
+}  // namespace aerate::bench
 
 int main(int argc, char** argv) {
-  try {
-    std::vector<double> voxel_sizes;
-    if (argc > 1) {
-      std::istringstream list(argv[1]);
-      for (std::string size; std::getline(list, size, ',');) voxel_sizes.push_back(std::stod(size));
-    }
-    print_spheres();
-    for (int i = 2; i < argc; ++i) print_remeshed(argv[i], voxel_sizes);
-    print_writing();
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bench_carve: {}\n", error.what());
-    return 1;
-  }
+  return aerate::bench::run_benchmark(
+      argc, argv, {"[VOXEL_SIZES MODEL.stl...]", 0, aerate::bench::kAnyNumber}, aerate::bench::run);
 }

@@ -1,25 +1,21 @@
-#include <algorithm>
-#include <chrono>
-#include <exception>
 #include <fmt/format.h>
 #include <string>
 #include <vector>
 
+#include "bench/benchmark.h"
 #include "bench/containers.h"
-#include "core/error.h"
 #include "core/monitor.h"
 #include "kernels/cuda_device.h"
 #include "packing/adaptive.h"
-#include "packing/device.h"
+#include "packing/device_choice.h"
 #include "packing/hexagonal.h"
 #include "tests/support/shapes.h"
 
 // Both packers on the CPU and on every CUDA device of the machine, side by side, on the paper's ten
 // containers with its radii (no wall, no gap): seconds from the mesh in host memory to the spheres in host
 // memory, the least of three runs after one that is not counted. The seconds that a device takes to start are
-// printed first: what they and the tables say goes into the model of src/packing/device.cpp.
+// printed first: what they and the tables say goes into the model of src/packing/device_choice.cpp.
 //
-//   bench_devices [MODELS [FACTOR [CONTAINER]]]
 // MODELS: the folder; FACTOR: to the radii (a simulated device wants 5 or more); CONTAINER: by name, only
 // that
 
@@ -27,19 +23,6 @@ namespace aerate::bench {
 namespace {
 
 using Kind = DeviceRequest::Kind;
-
-template <typename Pack>
-double least_seconds(Pack pack) {
-  constexpr int kRuns = 3;
-  pack();
-  double least = 1e300;
-  for (int run = 0; run < kRuns; ++run) {
-    const auto start = std::chrono::steady_clock::now();
-    pack();
-    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  return least;
-}
 
 struct Row {
   std::string name;
@@ -55,9 +38,9 @@ std::string text_of(const Row& row) {
   return text;
 }
 
-struct Arguments {
-  std::string models = "../shared/models";
-  double factor = 1;
+struct Selection {
+  std::string models;
+  double factor;
   std::string container;  // empty for all
 };
 
@@ -65,15 +48,13 @@ struct Arguments {
 void print_start(const DeviceRequest& device) {
   const Mesh box = test::make_box({0, 0, 0}, {4, 4, 4});
   Monitor monitor;
-  const auto start = std::chrono::steady_clock::now();
-  pack_hexagonal(box, {0, 0, 0, 1}, monitor, device);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = seconds_of([&] { pack_hexagonal(box, {0, 0, 0, 1}, monitor, device); });
   fmt::print("cuda:{}: first job after {:.3f} s\n", device.index, seconds);
 }
 
 template <typename Pack>
-void print_table(const std::string& title, const std::vector<DeviceRequest>& devices,
-                 const Arguments& arguments, Pack pack) {
+void print_table(const std::string& title, const std::vector<DeviceRequest>& devices, const Selection& chosen,
+                 Pack pack) {
   fmt::print("\n{}\n\n| container | triangles | spheres | cpu s |", title);
   for (std::size_t i = 1; i < devices.size(); ++i) fmt::print(" cuda:{} s |", devices[i].index);
   for (std::size_t i = 1; i < devices.size(); ++i) fmt::print(" cpu / cuda:{} |", devices[i].index);
@@ -81,25 +62,29 @@ void print_table(const std::string& title, const std::vector<DeviceRequest>& dev
   for (std::size_t i = 1; i < devices.size(); ++i) fmt::print("---|---|");
   fmt::print("\n");
   for (const Container& container : paper_containers()) {
-    if (!arguments.container.empty() && arguments.container != container.name) continue;
-    const auto mesh = container_mesh(container, arguments.models);
+    if (!chosen.container.empty() && chosen.container != container.name) continue;
+    const auto mesh = container_mesh(container, chosen.models);
     if (!mesh) {
-      fmt::print("| {} | skipped: {}/{} is not there |\n", container.name, arguments.models,
+      fmt::print("| {} | skipped: {}/{} is not there |\n", container.name, chosen.models,
                  container.model_file);
       continue;
     }
     Row row{container.name, mesh->triangles.size(), 0, {}};
     for (const DeviceRequest& device : devices) {
-      row.seconds.push_back(least_seconds([&] {
-        row.spheres = pack(*mesh, arguments.factor * container.max_radius, device).spheres.size();
-      }));
+      const auto once = [&] {
+        row.spheres = pack(*mesh, chosen.factor * container.max_radius, device).spheres.size();
+      };
+      once();
+      row.seconds.push_back(least_seconds(3, once));
     }
     fmt::print("{}\n", text_of(row));
     std::fflush(stdout);
   }
 }
 
-void run(const Arguments& arguments) {
+int run(const Arguments& arguments) {
+  const Selection chosen{arguments.text(0, "../shared/models"), arguments.number(1, 1),
+                         arguments.text(2, "")};
   for (const std::string& line : describe_devices()) fmt::print("{}\n", line);
   const kernels::CudaDevices found = kernels::find_cuda_devices();
   std::vector<DeviceRequest> devices{{.kind = Kind::cpu}};
@@ -110,30 +95,22 @@ void run(const Arguments& arguments) {
   for (std::size_t i = 1; i < devices.size(); ++i) print_start(devices[i]);
 
   Monitor monitor;
-  print_table("Hexagonal packing", devices, arguments,
+  print_table("Hexagonal packing", devices, chosen,
               [&](const Mesh& mesh, double radius, const DeviceRequest& device) {
                 return pack_hexagonal(mesh, {0, 0, 0, radius}, monitor, device);
               });
   constexpr double kLeastOfPaper = 0.1547;  // its smallest sphere to its largest
-  print_table("Adaptive packing, the paper's range of radii", devices, arguments,
+  print_table("Adaptive packing, the paper's range of radii", devices, chosen,
               [&](const Mesh& mesh, double radius, const DeviceRequest& device) {
                 return pack_adaptive(mesh, {0, 0, kLeastOfPaper * radius, radius}, {}, monitor, device);
               });
+  return 0;
 }
 
 }  // namespace
 }  // namespace aerate::bench
 
 int main(int argc, char** argv) {
-  try {
-    aerate::bench::Arguments arguments;
-    if (argc > 1) arguments.models = argv[1];
-    if (argc > 2) arguments.factor = std::stod(argv[2]);
-    if (argc > 3) arguments.container = argv[3];
-    aerate::bench::run(arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bench_devices: {}\n", error.what());
-    return 1;
-  }
-  return 0;
+  return aerate::bench::run_benchmark(argc, argv, {"[MODELS [FACTOR [CONTAINER]]]", 0, 3},
+                                      aerate::bench::run);
 }

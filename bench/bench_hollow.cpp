@@ -1,15 +1,13 @@
-#include <chrono>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fmt/format.h>
 #include <random>
 #include <string>
 
+#include "bench/benchmark.h"
 #include "core/monitor.h"
 #include "files/load.h"
 #include "files/write.h"
-#include "kernels/hexagonal.h"
+#include "kernels/hexagonal_packing.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
 #include "mesh/inspect.h"
@@ -20,16 +18,9 @@
 
 // The whole job on a large model, stage by stage, and in the same run what it is measured against: the
 // pipeline one would write with OpenVDB alone, and packing without an index.
-//   bench_hollow [MODEL [LONGEST_SIDE_MM [VOXEL_MM]]]
 
 namespace aerate::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 double longest_side(const Mesh& mesh) {
   const Box3f box = bounding_box(mesh);
@@ -41,11 +32,11 @@ double longest_side(const Mesh& mesh) {
 double naive_pipeline(const std::filesystem::path& model, double scale, const PackingLimits& limits,
                       double voxel, const std::filesystem::path& output) {
   Monitor monitor;
-  const auto start = Clock::now();
-  auto last = start;
+  const Stopwatch watch;
+  Stopwatch since_last;
   const auto lap = [&](const char* stage) {
-    fmt::print("| naive: {} | {:.2f} | |\n", stage, seconds_since(last));
-    last = Clock::now();
+    fmt::print("| naive: {} | {:.2f} | |\n", stage, since_last.seconds());
+    since_last = {};
   };
   const Mesh mesh = load_model(model, {.unit = std::nullopt, .scale = scale}).mesh;
   lap("load");
@@ -57,7 +48,7 @@ double naive_pipeline(const std::filesystem::path& model, double scale, const Pa
   lap("csgDifference and volumeToMesh");
   write_mesh(solid.mesh, output, MeshFormat::stl);
   lap("write");
-  const double seconds = seconds_since(start);
+  const double seconds = watch.seconds();
   fmt::print("| naive: all, {} triangles, voxels of {} mm, not checked | {:.2f} | |\n",
              solid.mesh.triangles.size(), voxel, seconds);
   return seconds;
@@ -73,7 +64,7 @@ double brute_force_packing(const Mesh& mesh, const PackingLimits& limits, std::s
   constexpr std::size_t kSample = 100;
   const double reach = limits.max_radius + limits.wall;
   std::size_t fitting = 0;
-  const auto start = Clock::now();
+  const Stopwatch watch;
   for (std::size_t i = 0; i < kSample; ++i) {
     const Vec3d centre = lattice.lattice_position(static_cast<std::uint32_t>(slot(random)));
     int winding = 0;
@@ -85,27 +76,26 @@ double brute_force_packing(const Mesh& mesh, const PackingLimits& limits, std::s
     }
     if (winding == 1 && !is_near) ++fitting;
   }
-  const double seconds = seconds_since(start) / kSample * static_cast<double>(candidates);
+  const double seconds = watch.seconds() / kSample * static_cast<double>(candidates);
   fmt::print("| packing by brute force, one thread, from {} of {} places ({} fit) | {:.0f}* | |\n", kSample,
              candidates, fitting, seconds);
   return seconds;
 }
 
-int run(const std::filesystem::path& model, double side, double voxel) {
+int run(const Arguments& arguments) {
+  const std::filesystem::path model = arguments.text(0, "../shared/models/dragon-871k.stl");
+  const double side = arguments.number(1, 100), voxel = arguments.number(2, 0.2);
   if (!std::filesystem::exists(model)) {
-    fmt::print("skipped: {} is not there\n", model.string());
-    return EXIT_SUCCESS;
+    fmt::print(stderr, "skipped: {} is not there\n", model.string());
+    return 0;
   }
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / fmt::format("aerate-bench-{}", std::random_device{}());
-  std::filesystem::create_directory(folder);
-
+  const ScratchFolder folder;
   const double scale = side / longest_side(load_model(model).mesh);
   HollowOptions options;
   options.model = model;
-  options.output = folder / "hollow.stl";
+  options.output = folder.path() / "hollow.stl";
   options.load.scale = scale;
-  options.packing.method = PackingMethod::hexagonal;
+  options.packing.method = &packing_method("hexagonal");
   options.packing.limits = {.wall = 0.8, .gap = 0.4, .min_radius = 0.62, .max_radius = 1.0};
   options.surface = SurfaceMode::keep;
   Monitor monitor;
@@ -121,30 +111,25 @@ int run(const std::filesystem::path& model, double side, double voxel) {
   fmt::print("| all: {} voids, {} triangles, checked | {:.2f} | {:.0f} |\n", report.output.void_count,
              report.output.triangle_count, total.seconds, total.peak_bytes / 1e6);
 
-  const double naive = naive_pipeline(model, scale, options.packing.limits, voxel, folder / "naive.stl");
+  const double naive =
+      naive_pipeline(model, scale, options.packing.limits, voxel, folder.path() / "naive.stl");
   const Mesh mesh = load_model(model, options.load).mesh;
-  const auto start = Clock::now();
+  const Stopwatch watch;
   const Packing packing = pack_hexagonal(mesh, options.packing.limits, monitor);
-  const double indexed = seconds_since(start);
+  const double indexed = watch.seconds();
   const double brute_force = brute_force_packing(
       mesh, options.packing.limits,
       packing.statistics.outside + packing.statistics.near_surface + packing.spheres.size());
   fmt::print("| packing with the index | {:.3f} | |\n\n", indexed);
   fmt::print("naive / whole job: {:.1f}; brute force / index: {:.0f}\n", naive / total.seconds,
              brute_force / indexed);
-  std::filesystem::remove_all(folder);
-  return EXIT_SUCCESS;
+  return 0;
 }
 
 }  // namespace
 }  // namespace aerate::bench
 
 int main(int argc, char** argv) {
-  try {
-    return aerate::bench::run(argc > 1 ? argv[1] : "../shared/models/dragon-871k.stl",
-                              argc > 2 ? std::atof(argv[2]) : 100.0, argc > 3 ? std::atof(argv[3]) : 0.2);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bench_hollow: {}\n", error.what());
-    return EXIT_FAILURE;
-  }
+  return aerate::bench::run_benchmark(argc, argv, {"[MODEL [LONGEST_SIDE_MM [VOXEL_MM]]]", 0, 3},
+                                      aerate::bench::run);
 }

@@ -1,26 +1,24 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fmt/format.h>
 #include <limits>
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
+#include "bench/benchmark.h"
+#include "bench/figures.h"
 #include "core/monitor.h"
+#include "core/surface_index.h"
 #include "files/load.h"
-#include "kernels/winding.h"
 #include "packing/verify.h"
 #include "pipeline/hollow.h"
 #include "pipeline/process_choice.h"
 
 // What each process leaves of a model: whole jobs, drained where the process asks for that, and in the same
 // run the same job with sealed voids; then what roofs cost against the same limits without them.
-//   bench_processes [--markdown] [MODELS]
-// --markdown: the table of processes alone, as docs/processes.md has it.
+// --table: the tables of processes, as docs/processes.md has them.
 
 namespace aerate::bench {
 namespace {
@@ -55,18 +53,17 @@ double deeper_than(const Mesh& mesh, double wall) {
   constexpr double kStep = 0.5;
   const Box3f box = bounding_box(mesh);
   const Vec3d lower = to_double(box.lower), extent = to_double(box.upper) - lower;
+  const SurfaceIndex surface(mesh);
   std::vector<Vec3d> inside;
-  {
-    std::vector<Vec3d> points;
-    for (double z = kStep / 2; z < extent.z; z += kStep)
-      for (double y = kStep / 2; y < extent.y; y += kStep)
-        for (double x = kStep / 2; x < extent.x; x += kStep) points.push_back(lower + Vec3d{x, y, z});
-    const std::vector<int> winding =
-        kernels::HostWinding(mesh.positions, mesh.triangles).winding_numbers(points);
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (winding[i] == 1) inside.push_back(points[i]);
+  for (double z = kStep / 2; z < extent.z; z += kStep) {
+    for (double y = kStep / 2; y < extent.y; y += kStep) {
+      for (double x = kStep / 2; x < extent.x; x += kStep) {
+        const Vec3d p = lower + Vec3d{x, y, z};
+        if (surface.winding().winding_number(p) == 1) inside.push_back(p);
+      }
+    }
   }
-  const std::vector<double> distances = SurfaceIndex(mesh).distances(inside);
+  const std::vector<double> distances = surface.distances(inside);
   const auto deep =
       std::count_if(distances.begin(), distances.end(), [&](double distance) { return distance >= wall; });
   return static_cast<double>(deep) * kStep * kStep * kStep;
@@ -104,31 +101,32 @@ Jobs run_jobs(HollowOptions options) {
   return jobs;
 }
 
-void print_processes(const std::filesystem::path& model, const std::filesystem::path& folder) {
+// Prints the table, and returns it with its heading.
+std::string measure_processes(const std::filesystem::path& model, const std::filesystem::path& folder) {
   const Mesh mesh = load_model(model).mesh;
-  fmt::print("{}\n\n", model.filename().string());
-  fmt::print(
-      "| process | voids | not made | void volume, mm3 | % of what is deeper than the wall | the same "
-      "sealed, "
-      "% | widest ceiling, mm | drained | escape holes | trapped, % | job, s | sealed, s | ratio |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const std::string heading = model.filename().string() + "\n\n";
+  fmt::print("{}", heading);
+  Table table({"process", "voids", "not made", "void volume, mm3", "% of what is deeper than the wall",
+               "the same sealed, %", "widest ceiling, mm", "drained", "escape holes", "trapped, %", "job, s",
+               "sealed, s", "ratio"});
   for (const char* process : {"fdm", "sla", "sls", "metal"}) {
     const HollowOptions options = options_for(model, folder, choice_of(process));
     const Jobs jobs = run_jobs(options);
     const double bound = deeper_than(mesh, options.packing.limits.wall);
     const OutputFacts& output = jobs.asked.output;
     const auto& drainage = jobs.asked.drainage;
-    fmt::print("| {} | {} | {} | {:.0f} | {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} |\n",
-               process, output.void_count, drainage ? fmt::format("{}", drainage->dropped.count()) : "-",
-               output.volume_removed, percent_of_bound(jobs.asked, bound),
-               percent_of_bound(jobs.sealed, bound), widest_ceiling(output), drainage ? "yes" : "sealed",
-               drainage ? fmt::format("{}", drainage->plan.holes.size()) : "-",
-               drainage
-                   ? fmt::format("{:.2f}", 100 * drainage->plan.pools.after_both / drainage->plan.pools.total)
-                   : "-",
-               jobs.asked_seconds, jobs.sealed_seconds, jobs.asked_seconds / jobs.sealed_seconds);
+    table.add(
+        {process, fmt::format("{}", output.void_count),
+         drainage ? fmt::format("{}", drainage->dropped.count()) : "-",
+         fmt::format("{:.0f}", output.volume_removed), percent_of_bound(jobs.asked, bound),
+         percent_of_bound(jobs.sealed, bound), widest_ceiling(output), drainage ? "yes" : "sealed",
+         drainage ? fmt::format("{}", drainage->plan.holes.size()) : "-",
+         drainage ? hundredths(100 * drainage->plan.pools.after_both / drainage->plan.pools.total) : "-",
+         hundredths(jobs.asked_seconds), hundredths(jobs.sealed_seconds),
+         hundredths(jobs.asked_seconds / jobs.sealed_seconds)});
   }
   fmt::print("\n");
+  return heading + table.markdown();
 }
 
 // The same limits with and without a rule for ceilings, sealed.
@@ -144,47 +142,40 @@ void print_roofs(const std::filesystem::path& model, const std::filesystem::path
   const std::vector<Pair> pairs{
       {"fdm, radius 1.5 to 10", choice_of("fdm", wide), choice_of("fdm", wide_without)},
       {"metal", choice_of("metal"), choice_of("metal", {no_rule})}};
-  fmt::print(
-      "| limits | voids | with roofs | void volume, mm3 | without roofs, mm3 | ratio | widest ceiling, mm |\n"
-      "|---|---|---|---|---|---|---|\n");
+  Table table({"limits", "voids", "with roofs", "void volume, mm3", "without roofs, mm3", "ratio",
+               "widest ceiling, mm"});
   for (const Pair& pair : pairs) {
     Monitor monitor;
     const OutputFacts with = hollow(options_for(model, folder, pair.with), monitor).output;
     const OutputFacts without = hollow(options_for(model, folder, pair.without), monitor).output;
-    fmt::print("| {} | {} | {} | {:.0f} | {:.0f} | {:.3f} | {} |\n", pair.name, with.void_count,
-               with.roof_count, with.volume_removed, without.volume_removed,
-               with.volume_removed / without.volume_removed, widest_ceiling(with));
+    table.add({pair.name, fmt::format("{}", with.void_count), fmt::format("{}", with.roof_count),
+               fmt::format("{:.0f}", with.volume_removed), fmt::format("{:.0f}", without.volume_removed),
+               fmt::format("{:.3f}", with.volume_removed / without.volume_removed), widest_ceiling(with)});
   }
   fmt::print("\n");
 }
 
-int run(const std::vector<std::filesystem::path>& models, bool markdown) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / fmt::format("aerate-bench-{}", std::random_device{}());
-  std::filesystem::create_directory(folder);
-  for (const std::filesystem::path& model : models) {
+int run(const Arguments& arguments) {
+  const ScratchFolder folder;
+  std::vector<std::string> tables;
+  for (const char* name : {"dragon-47k-100mm.stl", "bunny-100mm.stl"}) {
+    const std::filesystem::path model = std::filesystem::path(arguments.text(0, "../shared/models")) / name;
     if (std::filesystem::exists(model)) {
-      print_processes(model, folder);
-      if (!markdown) print_roofs(model, folder);
+      tables.push_back(measure_processes(model, folder.path()));
+      print_roofs(model, folder.path());
     } else {
-      fmt::print("skipped: {} is not there\n", model.string());
+      fmt::print(stderr, "skipped: {} is not there\n", model.string());
+      if (arguments.wants_figures()) return 1;
     }
   }
-  std::filesystem::remove_all(folder);
-  return EXIT_SUCCESS;
+  write_figures(arguments, fmt::format("{}", fmt::join(tables, "\n")), "");
+  return 0;
 }
 
 }  // namespace
 }  // namespace aerate::bench
 
 int main(int argc, char** argv) {
-  try {
-    const bool markdown = argc > 1 && std::string(argv[1]) == "--markdown";
-    const int models = markdown ? 2 : 1;
-    const std::filesystem::path folder = argc > models ? argv[models] : "../shared/models";
-    return aerate::bench::run({folder / "dragon-47k-100mm.stl", folder / "bunny-100mm.stl"}, markdown);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bench_processes: {}\n", error.what());
-    return EXIT_FAILURE;
-  }
+  return aerate::bench::run_benchmark(argc, argv, {"[MODELS]", 0, 1, aerate::bench::Tables::written},
+                                      aerate::bench::run);
 }

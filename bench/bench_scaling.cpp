@@ -1,14 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <ctime>
-#include <exception>
 #include <fmt/format.h>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -17,9 +13,11 @@
 #include <unistd.h>
 #include <vector>
 
+#include "bench/benchmark.h"
 #include "bench/figures.h"
 #include "core/monitor.h"
 #include "core/packing.h"
+#include "kernels/constants.h"
 #include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "packing/verify.h"
@@ -28,13 +26,11 @@
 // (in such a ball of 20,000 triangles, up to five million), both packings; and what the index of triangles
 // takes. Every row is a process of its own, so that its peak of memory is its own, and every sphere is
 // verified.
-// Usage: bench_scaling [TRIANGLES [SPHERES [ADAPTIVE_SPHERES]]] [--table FILE] [--summary FILE], the most of
-// each, in millions. Exit status 1 if a sphere breaks a limit.
+// The arguments are the most of each, in millions. Exit status 1 if a sphere breaks a limit.
 
 namespace aerate::bench {
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr DeviceRequest kCpu{DeviceRequest::Kind::cpu, 0};
 
 // A ball proper would be a case of its own: all its triangles are nearest to its centre.
@@ -83,12 +79,12 @@ using Pack = std::function<Packing(const Mesh&, Monitor&)>;
 
 Row measure(const Mesh& mesh, const Pack& pack) {
   Monitor monitor;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const std::clock_t processor_start = std::clock();
   const Packing packing = pack(mesh, monitor);
   Row row{};
   row.processor_seconds = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
-  row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  row.seconds = watch.seconds();
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   row.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
@@ -238,7 +234,7 @@ Growth measure_growth(double triangles, double spheres, double adaptive_spheres)
   measure_series({"Hexagonal, R = 1 mm: more triangles", &Row::triangles, "triangle"},
                  with_triangles(triangles, hexagonal(1)), growth);
   measure_series({"Adaptive, r >= 0.4 mm: more triangles", &Row::triangles, "triangle"},
-                 with_triangles(triangles, adaptive(0.4, kUnlimited)), growth);
+                 with_triangles(triangles, adaptive(0.4, kernels::kInfinity)), growth);
   // So many spheres there are, about, at scale 1.
   measure_series({"Hexagonal, 20,000 triangles: more spheres", &Row::spheres, "sphere"},
                  with_spheres(spheres, 5e6, [](double scale) { return hexagonal(0.0925 * scale); }), growth);
@@ -249,13 +245,9 @@ Growth measure_growth(double triangles, double spheres, double adaptive_spheres)
   return growth;
 }
 
-int run(const FigureArguments& arguments) {
-  std::array<double, 3> millions{10, 5, 2.5};
-  for (std::size_t i = 0; i < arguments.others.size(); ++i) {
-    millions[i] = std::atof(arguments.others[i].c_str());
-    if (!(millions[i] > 0)) throw std::invalid_argument("numbers of triangles and spheres, in millions");
-  }
-  const Growth growth = measure_growth(1e6 * millions[0], 1e6 * millions[1], 1e6 * millions[2]);
+int run(const Arguments& arguments) {
+  const Growth growth = measure_growth(1e6 * arguments.number(0, 10), 1e6 * arguments.number(1, 5),
+                                       1e6 * arguments.number(2, 2.5));
   if (growth.corrected > 0) {
     fmt::print(stderr, "{} spheres broke a limit\n", growth.corrected);
     return 1;
@@ -267,9 +259,8 @@ int run(const FigureArguments& arguments) {
 }  // namespace
 }  // namespace aerate::bench
 
-int main(int argc, char** argv) try {
-  return aerate::bench::run(aerate::bench::parse_figure_arguments(argc, argv, 3));
-} catch (const std::exception& error) {
-  fmt::print(stderr, "bench_scaling: {}\n", error.what());
-  return 2;
+int main(int argc, char** argv) {
+  return aerate::bench::run_benchmark(
+      argc, argv, {"[TRIANGLES [SPHERES [ADAPTIVE_SPHERES]]]", 0, 3, aerate::bench::Tables::written},
+      aerate::bench::run);
 }

@@ -40,24 +40,11 @@ std::string grouped(double count) {
   return fmt::format("{}{}", count < 0 ? "-" : "", digits);
 }
 
-FigureArguments parse_figure_arguments(int argc, char** argv, std::size_t most) {
-  FigureArguments arguments;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const bool is_table = argument == "--table";
-    if (is_table || argument == "--summary") {
-      if (++i == argc) throw std::invalid_argument(argument + " wants a file");
-      (is_table ? arguments.table_file : arguments.summary_file) = argv[i];
-    } else if (argument.starts_with("-") || arguments.others.size() == most) {
-      throw std::invalid_argument("what is " + argument + '?');
-    } else {
-      arguments.others.push_back(argument);
-    }
-  }
-  return arguments;
+std::string hundredths(double value) {
+  return fmt::format("{:.2f}", value);
 }
 
-void write_figures(const FigureArguments& arguments, const std::string& tables, const std::string& summary) {
+void write_figures(const Arguments& arguments, const std::string& tables, const std::string& summary) {
   if (!arguments.table_file.empty()) write_file(arguments.table_file, tables);
   if (!arguments.summary_file.empty()) write_file(arguments.summary_file, summary);
 }

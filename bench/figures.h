@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/benchmark.h"
+
 // Measured figures on their way into a document: tables in Markdown, and files of them for scripts/put-table.
 
 namespace aerate::bench {
@@ -25,20 +27,12 @@ class Table {
 
 // 12,345,678
 std::string grouped(double count);
-
-// What a benchmark that writes tables is called with: ARGUMENTS... [--table FILE] [--summary FILE]
-struct FigureArguments {
-  std::vector<std::string> others;
-  std::string table_file;    // gets the tables; empty: they are not wanted
-  std::string summary_file;  // gets rows of README's table of packing: what, and the figure
-};
-
-// Throws std::invalid_argument for other options, and for more than `most` arguments that are none.
-FigureArguments parse_figure_arguments(int argc, char** argv, std::size_t most);
+// 12345678.90
+std::string hundredths(double value);
 
 // Keeps what was measured, for those files that are wanted. A table from which a model was left out, or with
 // figures of a packing that breaks its limits, is none: call it only where all is well.
 // Throws std::runtime_error if a file cannot be written.
-void write_figures(const FigureArguments& arguments, const std::string& tables, const std::string& summary);
+void write_figures(const Arguments& arguments, const std::string& tables, const std::string& summary);
 
 }  // namespace aerate::bench

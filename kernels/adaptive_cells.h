@@ -215,7 +215,7 @@ struct MakeRoots {
     const auto y = static_cast<double>(row);
     const auto z = static_cast<double>(layer);
     const Vec3d centre = origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * edge;
-    const SurfaceAnchor anchor = anchor_at(field, {centre, 0, kNoFacet}, centre);
+    const SurfaceAnchor anchor = anchor_at(field, {centre, 0, kNone}, centre);
     cells.cells[i] = {centre, anchor.signed_distance, anchor.facet, 0};
     cells.bounds[i] = anchor.signed_distance - field.wall + cells.root_half_diagonal;
   }

@@ -4,12 +4,12 @@
 #include <cstdint>
 
 #include "kernels/ball_grid.h"
+#include "kernels/constants.h"
 #include "kernels/nearest_point.h"
-#include "kernels/roof_distance.h"
-#include "kernels/roofed_surface.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
+#include "kernels/void_shape.h"
 #include "kernels/winding.h"
 
 // The clearance f(x), the largest radius of a void at x, that the adaptive packing places its voids by. For
@@ -17,13 +17,6 @@
 // negative outside the solid and changes by no more than x moves.
 
 namespace aerate::kernels {
-
-// A value of f with what attains it, as a function that is easy to work with near p: |x - centre| - radius.
-struct Clearance {
-  double value;
-  Vec3d centre;
-  double radius;
-};
 
 template <typename Shape>
 struct FieldView {
@@ -37,10 +30,10 @@ struct FieldView {
 // changes by no more than the way walked, so nearby points often need not ask again.
 struct SurfaceAnchor {
   Vec3d point;
-  // 0 if nothing is known; inside the solid it may be too small, and is, for voids with roofs, that of the
-  // largest void: its radius and the wall.
+  // 0 if nothing is known; inside the solid it may be too small, and is, for voids that are no balls, that of
+  // the largest void: its radius and the wall.
   double signed_distance;
-  std::uint32_t facet;  // may be kNoFacet
+  std::uint32_t facet;  // may be kNone
 };
 
 template <typename Shape>
@@ -56,21 +49,14 @@ AERATE_HD inline bool is_inside(const FieldView<Shape>& field, const SurfaceAnch
 template <typename Shape>
 AERATE_HD inline SurfaceAnchor anchor_at(const FieldView<Shape>& field, const SurfaceAnchor& nearby,
                                          Vec3d p) {
-  if constexpr (Shape::kHasRoof) {
+  if constexpr (!Shape::kIsBall) {
     if (is_inside(field, nearby, p)) {
-      const Roof& roof = field.balls.shape.roof;
-      WidestVoid widest;
-      if (nearby.facet == kNoFacet) {
-        widest = widest_void(field.surface, roof, p, field.wall);
-      } else {
-        const double known = radius_within(roof, p, field.surface.facets[nearby.facet], field.wall).value;
-        widest = narrower_than(field.surface, roof, p, field.wall, {known, nearby.facet});
-      }
+      const WidestVoid widest = field.balls.shape.widest(field.surface, p, field.wall, nearby.facet);
       return {p, widest.radius + field.wall, widest.facet};
     }
   }
-  NearestFacet nearest{kUnbounded, nearby.facet};
-  if (nearby.facet != kNoFacet) {
+  NearestFacet nearest{kInfinity, nearby.facet};
+  if (nearby.facet != kNone) {
     nearest.distance_squared = distance_squared_to_facet(p, field.surface.facets[nearby.facet]);
   }
   nearest = field.surface.nearer_than(p, nearest);
@@ -86,19 +72,19 @@ AERATE_HD inline SurfaceAnchor anchor_within(const FieldView<Shape>& field, cons
   const double still_inside = nearby.signed_distance - length(p - nearby.point);
   if (still_inside > max_of(most_inside, 0.0)) return {p, still_inside, nearby.facet};
   const bool inside = is_inside(field, nearby, p);
-  if constexpr (Shape::kHasRoof) {
+  if constexpr (!Shape::kIsBall) {
     if (inside) return anchor_at(field, nearby, p);
   }
   // A trifle more, so that what is just as far is found.
   const double most = max_of(inside ? most_inside : most_outside, 0.0) * (1 + 1e-12);
-  NearestFacet nearest{most * most, kNoFacet};
-  if (nearby.facet != kNoFacet) {
+  NearestFacet nearest{most * most, kNone};
+  if (nearby.facet != kNone) {
     const double distance_squared = distance_squared_to_facet(p, field.surface.facets[nearby.facet]);
     if (distance_squared < nearest.distance_squared) nearest = {distance_squared, nearby.facet};
   }
   nearest = field.surface.nearer_than(p, nearest);
   const double distance = std::sqrt(nearest.distance_squared);
-  return {p, inside ? distance : -distance, nearest.facet != kNoFacet ? nearest.facet : nearby.facet};
+  return {p, inside ? distance : -distance, nearest.facet != kNone ? nearest.facet : nearby.facet};
 }
 
 // The constraint that a facet is at p, which is at `signed_distance` from it.
@@ -118,16 +104,17 @@ AERATE_HD inline Clearance facet_clearance(const FieldView<Shape>& field, std::u
   return result;
 }
 
-// The constraint that a facet is to a void with a roof at p: that of the ball on its spine that touches.
-AERATE_HD inline Clearance roofed_facet_clearance(const FieldView<RoofedShape>& field, std::uint32_t facet,
-                                                  Vec3d p, double scale) {
-  const Roof& roof = field.balls.shape.roof;
-  const SpineReach reach = radius_within(roof, p, field.surface.facets[facet], field.wall);
-  const double fallen = reach.height * roof.sine;
-  Clearance result =
-      facet_clearance(field, facet, reach.value - fallen + field.wall, p + roof.up * reach.height, scale);
+// The constraint that a facet is to a void at p that is no ball: that of the ball of it that touches.
+template <typename Shape>
+AERATE_HD inline Clearance void_facet_clearance(const FieldView<Shape>& field, std::uint32_t facet, Vec3d p,
+                                                double scale) {
+  const Shape& shape = field.balls.shape;
+  const SpineReach reach = shape.at_facet(field.surface, p, field.wall, facet);
+  const double fallen = shape.fall(reach.height);
+  const Vec3d rise = shape.rise(reach.height);
+  Clearance result = facet_clearance(field, facet, reach.value - fallen + field.wall, p + rise, scale);
   result.value = reach.value;
-  result.centre = result.centre - roof.up * reach.height;
+  result.centre = result.centre - rise;
   result.radius -= fallen;
   return result;
 }
@@ -137,31 +124,26 @@ template <typename Shape>
 AERATE_HD inline Clearance ball_clearance(const FieldView<Shape>& field, const NearestBall& nearest,
                                           Vec3d p) {
   const Ball& ball = field.balls.balls[nearest.ball];
-  Clearance result{nearest.clearance, ball.centre, ball.radius + field.balls.gap};
-  if constexpr (Shape::kHasRoof) {
-    const Roof& roof = field.balls.shape.roof;
-    const SpineReach reach = radius_beside(roof, p, ball.centre, ball.radius, field.balls.gap);
-    result.centre = ball.centre - roof.up * reach.height;
-    result.radius -= std::abs(reach.height) * roof.sine;
-  }
-  return result;
+  return field.balls.shape.constraint_beside(p, ball, field.balls.gap, nearest.clearance);
 }
 
-// The surface's part of `clearance_at` at a point inside, for voids with roofs; `result` has the balls' part.
-AERATE_HD inline Clearance roofed_clearance_inside(const FieldView<RoofedShape>& field, SurfaceAnchor& anchor,
-                                                   Vec3d p, double limit, double enough,
-                                                   const Clearance& result) {
-  const Roof& roof = field.balls.shape.roof;
-  WidestVoid widest{result.value, kNoFacet};
-  if (anchor.facet != kNoFacet) {
-    const double known = radius_within(roof, p, field.surface.facets[anchor.facet], field.wall).value;
-    if (known < min_of(enough, result.value)) return roofed_facet_clearance(field, anchor.facet, p, limit);
+// The surface's part of `clearance_at` at a point inside, for voids that are no balls; `result` has the part
+// of the voids.
+template <typename Shape>
+AERATE_HD inline Clearance void_clearance_inside(const FieldView<Shape>& field, SurfaceAnchor& anchor,
+                                                 Vec3d p, double limit, double enough,
+                                                 const Clearance& result) {
+  const Shape& shape = field.balls.shape;
+  WidestVoid widest{result.value, kNone};
+  if (anchor.facet != kNone) {
+    const double known = shape.at_facet(field.surface, p, field.wall, anchor.facet).value;
+    if (known < min_of(enough, result.value)) return void_facet_clearance(field, anchor.facet, p, limit);
     if (known < widest.radius) widest = {known, anchor.facet};
   }
-  widest = narrower_than(field.surface, roof, p, field.wall, widest);
-  if (widest.facet == kNoFacet) return result;
+  widest = shape.narrower(field.surface, p, field.wall, widest);
+  if (widest.facet == kNone) return result;
   anchor = {p, widest.radius + field.wall, widest.facet};
-  return roofed_facet_clearance(field, widest.facet, p, limit);
+  return void_facet_clearance(field, widest.facet, p, limit);
 }
 
 // f(p) clipped to `limit` (where it is clipped, the sphere that comes with it means nothing) and what attains
@@ -172,7 +154,7 @@ AERATE_HD inline Clearance clearance_at(const FieldView<Shape>& field, SurfaceAn
                                         double limit, double enough) {
   const NearestBall ball = field.balls.nearest(p, limit);
   Clearance result{ball.clearance, p, 0};
-  if (ball.ball != kNoBall) {
+  if (ball.ball != kNone) {
     result = ball_clearance(field, ball, p);
     if (result.value < enough) return result;
   }
@@ -180,11 +162,11 @@ AERATE_HD inline Clearance clearance_at(const FieldView<Shape>& field, SurfaceAn
   if (anchor.signed_distance - walked - field.wall >= result.value) return result;
 
   const bool inside = is_inside(field, anchor, p);
-  if constexpr (Shape::kHasRoof) {
-    if (inside) return roofed_clearance_inside(field, anchor, p, limit, enough, result);
+  if constexpr (!Shape::kIsBall) {
+    if (inside) return void_clearance_inside(field, anchor, p, limit, enough, result);
   }
-  NearestFacet nearest{kUnbounded, anchor.facet};
-  if (anchor.facet != kNoFacet) {
+  NearestFacet nearest{kInfinity, anchor.facet};
+  if (anchor.facet != kNone) {
     nearest.distance_squared = distance_squared_to_facet(p, field.surface.facets[anchor.facet]);
     if (inside) {
       const double distance = std::sqrt(nearest.distance_squared);
@@ -194,9 +176,9 @@ AERATE_HD inline Clearance clearance_at(const FieldView<Shape>& field, SurfaceAn
     }
   }
   const double search = result.value + field.wall;
-  if (inside && nearest.distance_squared > search * search) nearest = {search * search, kNoFacet};
+  if (inside && nearest.distance_squared > search * search) nearest = {search * search, kNone};
   nearest = field.surface.nearer_than(p, nearest);
-  if (nearest.facet == kNoFacet) return result;
+  if (nearest.facet == kNone) return result;
   const double distance = std::sqrt(nearest.distance_squared);
   anchor = {p, inside ? distance : -distance, nearest.facet};
   if (anchor.signed_distance - field.wall >= result.value) return result;

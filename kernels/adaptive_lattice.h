@@ -102,14 +102,8 @@ struct LatticeFit {
   AERATE_HD void operator()(std::size_t i) const {
     const Vec3d p = lattice.point(first + i);
     fits[i] =
-        winding.winding_number(p) == 1 && surface.nearest(p, clearance * clearance).facet == kNoFacet ? 1 : 0;
+        winding.winding_number(p) == 1 && surface.nearest(p, clearance * clearance).facet == kNone ? 1 : 0;
   }
-};
-
-struct TallyFitting {
-  View<const std::uint8_t> fits;
-
-  AERATE_HD Tally operator()(std::size_t i) const { return {fits[i], 0u, 0u}; }
 };
 
 struct CountOnly {

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "kernels/adaptive_cells.h"
@@ -17,8 +15,11 @@
 #include "kernels/adaptive_selection.h"
 #include "kernels/adaptive_settle.h"
 #include "kernels/ball_grid.h"
+#include "kernels/constants.h"
+#include "kernels/cuda_device.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/packer.h"
 #include "kernels/roof.h"
 #include "kernels/tally.h"
 #include "kernels/triangle_bvh.h"
@@ -31,50 +32,29 @@
 
 namespace aerate::kernels {
 
-// What a packing must obey and when it ends; and how it is done, for benchmarks that show why.
+// What a packing must obey, mm, and when it ends.
 struct AdaptiveParameters {
   double wall = 0;
   double gap = 0;
   double min_radius = 0;
-  double max_radius = kUnbounded;
+  double max_radius = kInfinity;
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
-  double max_volume = kUnbounded;  // mm3, of all voids
+  double max_volume = kInfinity;  // mm3, of all voids
   Roof roof{};
-  double level_ratio = 0.9;  // balls of a level are at least this much of its largest
-  // Cells that are searched: their half diagonal to the level's least radius, and how far a search goes, in
-  // extents of its cell. The first balls are most of the volume and little of the work, so they get finer
-  // ones.
-  double cell_ratio = 2.8;
-  double region_ratio = 0.8;
-  std::size_t first_count = 5000;
-  double first_cell_ratio = 2.2;
-  double first_region_ratio = 1.0;
-  double settle_cell_ratio = 1.4;  // the same for balls that settle: more starts, better places
-  double settle_reach = 1;         // to the largest radius; 0 for balls of it that stay where there is room
-  double least_lattice_share = 0.25;  // of the volume, with half the gap around each ball: else no lattice
-  double least_slab_lattice_share = 0.5;  // the same in slabs, where the radii are not alike
-  std::uint32_t lattice_trials = 16;
-  double tolerance_ratio = 1e-4;  // precision of the maxima to the level's least radius
 };
 
-struct AdaptiveInput {
-  std::span<const Vec3f> positions;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
-  Box3d box{};        // of the positions
+struct AdaptiveInput : PackerInput {
   double volume = 0;  // mm3, of the solid
-  AdaptiveParameters parameters;
+  AdaptiveParameters parameters{};
   // Cells, searches and places that are worked on at a time; fewer if memory asks for it. The result does not
   // depend on it.
   std::size_t most_at_a_time = std::size_t{1} << 20;
-  // Called between pieces of work with the share that is done; what it throws ends the job.
-  std::function<void(double)> progress = [](double) {};
 };
 
 struct AdaptiveResult {
   std::vector<Ball> balls;        // in the order they were placed
   std::size_t lattice_count = 0;  // so many of the first stand on a lattice
   std::size_t search_count = 0;   // searches for a local maximum
-  std::size_t round_count = 0;
   std::size_t index_bytes = 0;
   std::size_t most_at_a_time = 0;
 };
@@ -104,12 +84,6 @@ struct Search {
       cells.bounds[id] = min_of(maximum.bound, 0.9999 * limits.least);
     }
   }
-};
-
-struct TallyFound {
-  View<const std::uint8_t> found;
-
-  AERATE_HD Tally operator()(std::size_t i) const { return {found[i], 0u, 0u}; }
 };
 
 // Appends what was found, ready to be ranked.
@@ -149,6 +123,7 @@ class AdaptivePacker {
         parameters_(input.parameters),
         box_(input.box),
         solid_volume_(input.volume),
+        shape_(shape),
         grid_(executor, shape),
         tree_(executor, paced_),
         selection_(executor, paced_, shape) {
@@ -166,14 +141,13 @@ class AdaptivePacker {
 
   AdaptiveResult pack() {
     place_all();
-    return {executor_.download(balls_.view()), lattice_count_, search_count_, round_count_,
-            bvh_.bytes() + winding_.bytes(),   at_a_time_};
+    return {executor_.download(balls_.view()), lattice_count_, search_count_,
+            bvh_.bytes() + winding_.cells.bytes(), at_a_time_};
   }
 
  private:
-  static constexpr double kLatticeDiameters = 3;
-  static constexpr double kAlike = 0.95;   // radii, to the largest
-  static constexpr double kTrifle = 1e-9;  // of a radius
+  static constexpr double kTrifle = 1e-9;     // of a radius
+  static constexpr double kLevelRatio = 0.9;  // balls of a level are at least this much of its largest
   // The grid of balls is made anew when the largest clearance left is this much of its reach: long lists cost
   // more than new ones.
   static constexpr double kRebuildRatio = 0.75;
@@ -201,10 +175,9 @@ class AdaptivePacker {
     tree_.make_roots(field(), box_, at_a_time_);
     rebuild_grids(largest);
     grid_.enter(balls_.view(), 0, parameters_.max_radius);
-    if (parameters_.max_radius < half_extent && parameters_.settle_reach > 0) settle_largest();
+    if (parameters_.max_radius < half_extent) settle_largest();
     if (done_) return;
-    threshold_ =
-        parameters_.max_radius < half_extent ? largest - 4 * shrink_ : largest * parameters_.level_ratio;
+    threshold_ = parameters_.max_radius < half_extent ? largest - 4 * shrink_ : largest * kLevelRatio;
     while (true) {
       if (threshold_ < least_radius_) threshold_ = least_radius_;
       if (largest < kRebuildRatio * grid_.reach()) rebuild_grids(largest);
@@ -213,7 +186,7 @@ class AdaptivePacker {
       }
       if (threshold_ <= least_radius_ || threshold_ < 1e-7 * half_extent) break;
       largest = threshold_;
-      threshold_ *= parameters_.level_ratio;
+      threshold_ *= kLevelRatio;
     }
   }
 
@@ -232,7 +205,7 @@ class AdaptivePacker {
   // by one, is left to the rounds that follow.
   void settle_largest() {
     constexpr std::size_t kFewest = 200;  // of those that stand, a round adds at least one for so many
-    Settling settling{parameters_.max_radius, parameters_.settle_reach * parameters_.max_radius};
+    Settling settling{parameters_.max_radius};
     const double spare = (parameters_.max_radius - shrink_ - least_radius_) / parameters_.max_radius;
     settling.tolerance = min_of(settling.tolerance, 0.5 * spare);
     threshold_ = settling.least();
@@ -258,7 +231,19 @@ class AdaptivePacker {
     return min_of(done, 1.0);
   }
 
-  bool among_the_first() const { return balls_.size() < parameters_.first_count; }
+  // Cells that are searched: their half diagonal to the level's least radius, and how far a search goes, in
+  // extents of its cell.
+  struct Fineness {
+    double cell, region;
+  };
+  // The first balls are most of the volume and little of the work, so they get finer cells. For those that
+  // settle: more starts, better places.
+  Fineness fineness(const Settling* settling) const {
+    constexpr std::size_t kFirst = 5000;
+    constexpr double kCellOfSettling = 1.4;
+    const Fineness usual = balls_.size() < kFirst ? Fineness{2.2, 1.0} : Fineness{2.8, 0.8};
+    return settling != nullptr ? Fineness{kCellOfSettling, usual.region} : usual;
+  }
 
   FieldView<Shape> field() { return {bvh_.view, winding_.view, grid_.view(), parameters_.wall}; }
 
@@ -266,21 +251,22 @@ class AdaptivePacker {
   // directions at least, in the best of several orientations and offsets; `Lattice` says which there are. In
   // slender models a lattice fits badly whatever its offset, and balls that settle are denser. In a slab it
   // has to leave little room for what is between the radii, or they have to be alike. There is none for voids
-  // with roofs.
+  // that are no balls.
   void place_lattice(double half_thickness, double half_middle) {
-    const double least_half = parameters_.max_radius * kLatticeDiameters;
-    if (!(least_half < half_middle)) return;
+    constexpr double kDiameters = 3, kAlike = 0.95;
+    constexpr double kLeastShare = 0.25, kLeastShareOfSlab = 0.5;  // of the volume, half the gap included
+    constexpr std::uint32_t kTrials = 16;
+    const double least_half = parameters_.max_radius * kDiameters;
+    if (!Shape::kIsBall || !(least_half < half_middle)) return;
     const bool fills_by_itself =
         least_half < half_thickness || parameters_.min_radius >= kAlike * parameters_.max_radius;
-    const double least_share =
-        fills_by_itself ? parameters_.least_lattice_share : parameters_.least_slab_lattice_share;
-    if (parameters_.roof.shapes(parameters_.max_radius)) return;
+    const double least_share = fills_by_itself ? kLeastShare : kLeastShareOfSlab;
     // A trifle smaller, so that ten balls fit where ten diameters are the length of a box.
     const double radius = parameters_.max_radius * (1 - kTrifle);
     const LatticeFit fit{bvh_.view, winding_.view, radius + parameters_.wall + shrink_};
     Lattice best;
     std::size_t best_count = 0;
-    for (std::uint32_t trial = 0; trial < parameters_.lattice_trials; ++trial) {
+    for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
       const Lattice lattice = make_lattice(box_, radius + 0.5 * parameters_.gap + shrink_,
                                            radius + parameters_.wall + 2 * shrink_, trial);
       const std::size_t count = count_fitting(fit, lattice);
@@ -295,7 +281,7 @@ class AdaptivePacker {
     std::size_t placed = 0;
     for_each_fit(fit, best, [&](std::size_t first, View<const std::uint8_t> fits) {
       const PlaceLattice place{best, first, fits, radius, balls_.view_from(placed)};
-      const Tally total = executor_.select(fits.size, TallyFitting{fits}, place);
+      const Tally total = executor_.select(fits.size, TallyMarked{fits}, place);
       placed = std::min(placed + total.first, best_count);
     });
     stop_at_limits(0);
@@ -309,7 +295,7 @@ class AdaptivePacker {
   std::size_t count_fitting(const LatticeFit& fit, const Lattice& lattice) {
     std::size_t count = 0;
     for_each_fit(fit, lattice, [&](std::size_t, View<const std::uint8_t> fits) {
-      count += executor_.select(fits.size, TallyFitting{fits}, CountOnly{}).first;
+      count += executor_.select(fits.size, TallyMarked{fits}, CountOnly{}).first;
     });
     return count;
   }
@@ -338,12 +324,8 @@ class AdaptivePacker {
   // pulled.
   bool place_round(const Settling* settling = nullptr) {
     using namespace adaptive_detail;
-    ++round_count_;
-    const double cell_ratio = settling != nullptr ? parameters_.settle_cell_ratio
-                              : among_the_first() ? parameters_.first_cell_ratio
-                                                  : parameters_.cell_ratio;
     const View<const std::uint32_t> cells =
-        tree_.refine(field(), threshold_, cell_ratio * threshold_, max_of(least_radius_, 0.0));
+        tree_.refine(field(), threshold_, fineness(settling).cell * threshold_, max_of(least_radius_, 0.0));
     if (cells.size == 0) return false;
     search_count_ += cells.size;
     search(cells, settling);
@@ -360,8 +342,9 @@ class AdaptivePacker {
   // Leaves what is found in these cells in `candidates_`, with keys and order for ranking.
   void search(View<const std::uint32_t> cells, const Settling* settling) {
     using namespace adaptive_detail;
-    const RefineLimits limits{threshold_ + shrink_, grid_.reach(), parameters_.tolerance_ratio * threshold_,
-                              among_the_first() ? parameters_.first_region_ratio : parameters_.region_ratio};
+    constexpr double kPrecision = 1e-4;  // of the maxima, to the level's least radius
+    const RefineLimits limits{threshold_ + shrink_, grid_.reach(), kPrecision * threshold_,
+                              fineness(settling).region};
     std::size_t found = 0;
     for_each_piece(cells.size, at_a_time_, [&](std::size_t first, std::size_t count) {
       const View<const std::uint32_t> list{cells.data + first, count};
@@ -376,7 +359,7 @@ class AdaptivePacker {
       }
       const ListFound append{searched_.view(),   found_.view(), found,
                              candidates_.view(), keys_.view(),  order_.view()};
-      found += executor_.select(list.size, TallyFound{found_.view()}, append).first;
+      found += executor_.select(list.size, TallyMarked{found_.view()}, append).first;
     });
     resize_candidates(found);
   }
@@ -390,11 +373,11 @@ class AdaptivePacker {
   // Looks at the balls from `first` on; takes back those beyond the wanted volume.
   void stop_at_limits(std::size_t first) {
     if (balls_.size() >= parameters_.max_count) done_ = true;
-    if (!(parameters_.max_volume < kUnbounded)) return;
+    if (!(parameters_.max_volume < kInfinity)) return;
     std::size_t count = first;
     for (const Ball& ball :
          executor_.download(View<Ball>{balls_.view().data + first, balls_.size() - first})) {
-      volume_ += void_volume(parameters_.roof, ball.radius);
+      volume_ += shape_.volume(ball.radius);
       ++count;
       if (volume_ < parameters_.max_volume) continue;
       done_ = true;
@@ -408,6 +391,7 @@ class AdaptivePacker {
   AdaptiveParameters parameters_;
   Box3d box_;
   double solid_volume_;
+  Shape shape_;
   TriangleBvh<Executor> bvh_;
   WindingIndex<Executor> winding_;
   double shrink_ = 0;
@@ -416,7 +400,7 @@ class AdaptivePacker {
   double volume_ = 0;
   bool done_ = false;
   std::size_t at_a_time_ = 0;
-  std::size_t search_count_ = 0, round_count_ = 0, lattice_count_ = 0;
+  std::size_t search_count_ = 0, lattice_count_ = 0;
 
   BallGrid<Executor, Shape> grid_;
   BallOrder<Executor> ball_order_;
@@ -429,19 +413,37 @@ class AdaptivePacker {
   GrowingBuffer<Executor, std::uint32_t> order_;
 };
 
-// What the index needs while it is built, about, for each facet: the facets twice, in the mesh's order and in
-// the hierarchy's, their boxes, and keys and order with a second copy to sort them.
-inline constexpr std::size_t kAdaptiveIndexBytes = 2 * sizeof(Facet) + sizeof(Box3f) + 12;
+namespace adaptive_detail {
 
-// The whole job. The triangles go to the executor's memory once, and each ball comes back once. Two
-// functions, since a packing without roofs must not pay for them.
-template <typename Executor>
-AdaptiveResult pack_adaptive(const Executor& executor, const AdaptiveInput& input) {
-  return AdaptivePacker<Executor, BallShape>(executor, input, {}).pack();
+// Throws CudaError (out_of_memory) unless the index of the triangles fits into the memory that is free.
+inline void require_room_for_index(std::size_t triangles, std::size_t free_bytes) {
+  // What it needs while it is built, about, for each facet: the facets twice, in the mesh's order and in the
+  // hierarchy's, their boxes, and keys and order with a second copy to sort them.
+  constexpr std::size_t kBytes = 2 * sizeof(Facet) + sizeof(Box3f) + 12;
+  constexpr std::size_t kBeside = 1 << 16;
+  const std::size_t needed = triangles * kBytes + kBeside;
+  if (free_bytes >= needed) return;
+  throw CudaError(CudaError::Kind::out_of_memory,
+                  "the index of " + std::to_string(triangles) + " triangles needs about " +
+                      std::to_string(needed >> 10) + " KiB of device memory, and " +
+                      std::to_string(free_bytes >> 10) + " KiB are free",
+                  kTooLittleMemoryHint);
 }
-template <typename Executor>
-AdaptiveResult pack_adaptive_with_roofs(const Executor& executor, const AdaptiveInput& input) {
-  return AdaptivePacker<Executor, RoofedShape>(executor, input, {input.parameters.roof}).pack();
-}
+
+}  // namespace adaptive_detail
+
+// The whole job. The triangles go to the executor's memory once, and each ball comes back once. What is
+// worked on at a time follows the free memory; the index, the cells and the balls must fit.
+template <typename Shape = BallShape>
+struct AdaptivePacking {
+  using Input = AdaptiveInput;
+  using Result = AdaptiveResult;
+
+  template <typename Executor>
+  static AdaptiveResult pack(const Executor& executor, const AdaptiveInput& input) {
+    adaptive_detail::require_room_for_index(input.triangles.size(), executor.free_bytes());
+    return AdaptivePacker<Executor, Shape>(executor, input, Shape::under(input.parameters.roof)).pack();
+  }
+};
 
 }  // namespace aerate::kernels

@@ -88,9 +88,6 @@ class FourConstraints {
   AERATE_HD double greatest() const {
     return max_of(max_of(value_[0], value_[1]), max_of(value_[2], value_[3]));
   }
-  AERATE_HD double least() const {
-    return min_of(min_of(value_[0], value_[1]), min_of(value_[2], value_[3]));
-  }
   AERATE_HD bool any_artificial() const {
     return artificial_[0] || artificial_[1] || artificial_[2] || artificial_[3];
   }
@@ -168,7 +165,7 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
   constexpr int kMostSteps = 48;
   constexpr int kMostRestarts = 2;
   Vec3d p = anchor.point;
-  LocalMaximum best{p, -kUnbounded, limits.most};
+  LocalMaximum best{p, -kInfinity, limits.most};
   Clearance here = clearance_at(field, anchor, p, limits.most, limits.most);
   if (here.value >= limits.most) {
     best.value = here.value;

@@ -1,14 +1,10 @@
-#include "kernels/adaptive_cuda.h"
-#include "kernels/exec_cuda.h"
+#include "kernels/adaptive_packing.h"
+#include "kernels/pack_on_cuda.h"
 
 // A source of its own, so that its kernels are compiled beside those of adaptive_cuda.cu.
 
 namespace aerate::kernels {
 
-AdaptiveResult pack_adaptive_with_roofs_on_cuda(int device, const AdaptiveInput& input) {
-  const CudaExecutor executor(device);
-  require_room_for_index(executor, input.triangles.size());
-  return pack_adaptive_with_roofs(executor, input);
-}
+template AdaptiveResult pack_on_cuda<AdaptivePacking<RoofedShape>>(int device, const AdaptiveInput& input);
 
 }  // namespace aerate::kernels

@@ -8,9 +8,9 @@
 #include "kernels/atomic.h"
 #include "kernels/ball_grid.h"
 #include "kernels/cell_grid.h"
+#include "kernels/constants.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
-#include "kernels/roof_distance.h"
 #include "kernels/tally.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
@@ -53,13 +53,9 @@ struct CandidateGrid {
 
   // Do the voids of two candidates come nearer to each other than the gap?
   AERATE_HD bool meet(const Candidate& a, const Candidate& b) const {
-    double span = a.value + b.value + gap;
-    if constexpr (Shape::kHasRoof) span += shape.head_start(max_of(a.value, b.value));
-    if (length_squared(a.point - b.point) >= span * span) return false;
-    if constexpr (Shape::kHasRoof) {
-      return distance_between(shape.roof, a.point, a.value, b.point, b.value) < gap;
-    }
-    return true;
+    const double span = shape.span(a.value + b.value + gap, max_of(a.value, b.value));
+    return length_squared(a.point - b.point) < span * span &&
+           shape.comes_nearer({a.point, a.value}, {b.point, b.value}, gap);
   }
 };
 
@@ -88,7 +84,7 @@ struct Decide {
       }
     } else {
       // Several threads may store the same value.
-      atomic_exchange(grid.heads[grid.cells.index_at(ranked[i].point)], kNoBall);
+      atomic_exchange(grid.heads[grid.cells.index_at(ranked[i].point)], kNone);
     }
   }
 
@@ -113,7 +109,7 @@ struct Decide {
     for (std::uint32_t z = cz == 0 ? 0 : cz - 1; z <= cz + 1 && z < cells.count_z; ++z) {
       for (std::uint32_t y = cy == 0 ? 0 : cy - 1; y <= cy + 1 && y < cells.count_y; ++y) {
         for (std::uint32_t x = cx == 0 ? 0 : cx - 1; x <= cx + 1 && x < cells.count_x; ++x) {
-          for (std::uint32_t j = grid.heads[cells.index(x, y, z)]; j != kNoBall; j = grid.next[j]) {
+          for (std::uint32_t j = grid.heads[cells.index(x, y, z)]; j != kNone; j = grid.next[j]) {
             if (j >= i || before[j] == Verdict::rejected) continue;
             const Candidate other = ranked[j];
             if (!grid.meet(me, other)) continue;
@@ -159,14 +155,13 @@ class CandidateSelection {
 
   // For candidates in the box with values up to `largest`.
   void reset(const Box3d& box, double largest, double gap, double least_cell) {
-    double span = 2 * largest + gap;
-    if constexpr (Shape::kHasRoof) span += grid_.shape.head_start(largest);
+    const double span = grid_.shape.span(2 * largest + gap, largest);
     grid_.cells = make_cell_grid(box, max_of(span, least_cell) * 1.000001);
     grid_.gap = gap;
     const std::size_t cells = grid_.cells.cell_count();
     if (heads_.size() < cells) heads_ = executor_.template allocate<std::uint32_t>(cells);
     grid_.heads = {heads_.view().data, cells};
-    executor_.for_each_index(cells, SetAll<std::uint32_t>{grid_.heads, kNoBall});
+    executor_.for_each_index(cells, SetAll<std::uint32_t>{grid_.heads, kNone});
   }
 
   // Appends balls, at most `most`, for those candidates that meet no larger one. Of candidates alike the

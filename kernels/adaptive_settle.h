@@ -24,7 +24,6 @@ struct RestingPlace {
 
 struct Settling {
   double radius;
-  double reach;             // how far a ball is moved at a time, about
   double tolerance = 1e-4;  // of the clearance at rest, to the radius
   Vec3d pull{-0.57735026918962576, -0.57735026918962576, -0.57735026918962576};  // unit, along a diagonal
 
@@ -40,8 +39,8 @@ AERATE_HD inline RestingPlace find_resting_place(const FieldView<Shape>& field, 
   constexpr int kMostRestarts = 8;
   const double slack = settling.tolerance * settling.radius;
   const double wanted = settling.radius + 0.5 * slack;
-  const double reach = settling.reach;
-  SurfaceAnchor anchor{start, 0, kNoFacet};
+  const double reach = settling.radius;  // how far a ball is moved at a time, about
+  SurfaceAnchor anchor{start, 0, kNone};
   Vec3d p = start, from = start;
   RestingPlace place{p, 0, false};
   FourConstraints four;

@@ -3,14 +3,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
 #include "kernels/atomic.h"
 #include "kernels/cell_grid.h"
+#include "kernels/constants.h"
 #include "kernels/growing_buffer.h"
-#include "kernels/roof_distance.h"
 #include "kernels/space_curve.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
@@ -20,17 +19,9 @@
 
 namespace aerate::kernels {
 
-struct Ball {
-  Vec3d centre;
-  double radius;
-};
-
-inline constexpr std::uint32_t kNoBall = 0xffffffffu;
-inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
 struct NearestBall {
-  double clearance;  // largest radius beside it, for balls |p - c| - r - gap; the limit if none is nearer
-  std::uint32_t ball;
+  double clearance;    // largest radius beside it, for balls |p - c| - r - gap; the limit if none is nearer
+  std::uint32_t ball;  // or kNone
 };
 
 struct BallEntry {
@@ -44,42 +35,35 @@ struct BallEntry {
 // left shrinks.
 template <typename Shape>
 struct BallGridView {
-  static constexpr std::uint32_t kEmpty = 0xffffffffu;
   static constexpr std::uint32_t kInsideBit = 0x80000000u;
 
   CellGrid cells;
   double reach = 0;
   double gap = 0;
-  View<std::uint32_t> heads;  // by cell: kEmpty, first entry, or kInsideBit | ball
+  View<std::uint32_t> heads;  // by cell: kNone, first entry, or kInsideBit | ball
   View<BallEntry> entries;
   View<const Ball> balls;
   Shape shape{};
 
   // The ball of least clearance at p, if that is below min(limit, reach). Ties go to the smaller index.
   AERATE_HD NearestBall nearest(Vec3d p, double limit) const {
-    NearestBall best{min_of(limit, reach), kNoBall};
+    NearestBall best{min_of(limit, reach), kNone};
     const std::uint32_t head = heads[cells.index_at(p)];
-    if (head == kEmpty) return best;
+    if (head == kNone) return best;
     if ((head & kInsideBit) != 0) {
       const std::uint32_t ball = head & ~kInsideBit;
       return {length(p - balls[ball].centre) - balls[ball].radius - gap, ball};
     }
-    for (std::uint32_t i = head; i != kEmpty; i = entries[i].next) {
+    for (std::uint32_t i = head; i != kNone; i = entries[i].next) {
       const std::uint32_t id = entries[i].ball;
       const Ball ball = balls[id];
       // Most balls of a cell are farther than the best so far, which squares can tell. The slack keeps the
       // rounding of squares out of the decision, which would otherwise depend on the order of the list.
       constexpr double kSlack = 1 + 1e-14;
-      double span = best.clearance + ball.radius + gap;
-      if constexpr (Shape::kHasRoof) span += shape.head_start(max_of(best.clearance, ball.radius));
+      const double span = shape.span(best.clearance + ball.radius + gap, max_of(best.clearance, ball.radius));
       const double distance_squared = length_squared(p - ball.centre);
       if (span < 0 || distance_squared > span * span * kSlack) continue;
-      double clearance;
-      if constexpr (Shape::kHasRoof) {
-        clearance = radius_beside(shape.roof, p, ball.centre, ball.radius, gap).value;
-      } else {
-        clearance = std::sqrt(distance_squared) - ball.radius - gap;
-      }
+      const double clearance = shape.radius_beside(p, ball, gap, distance_squared);
       if (clearance < best.clearance || (clearance == best.clearance && id < best.ball)) {
         best = {clearance, id};
       }
@@ -89,26 +73,6 @@ struct BallGridView {
 };
 
 namespace ball_grid_detail {
-
-// The box that holds every point from which a ball's clearance may be `reach` or less.
-template <typename Shape>
-AERATE_HD inline Box3d box_of_influence(const BallGridView<Shape>& grid, const Ball& ball) {
-  const double outer = ball.radius + grid.gap + grid.reach;
-  const Vec3d half{outer, outer, outer};
-  Box3d box{ball.centre - half, ball.centre + half};
-  if constexpr (Shape::kHasRoof) {
-    const Roof& roof = grid.shape.roof;
-    // The own roof reaches up to voids above; roofs of voids up to `reach` reach up to it from below.
-    const double above = roof.spine(ball.radius), below = roof.spine(grid.reach);
-    const double upper = outer - above * roof.sine, lower = outer - below * roof.sine;
-    const Vec3d top = ball.centre + roof.up * above, bottom = ball.centre - roof.up * below;
-    box.lower =
-        min_of(box.lower, min_of(top - Vec3d{upper, upper, upper}, bottom - Vec3d{lower, lower, lower}));
-    box.upper =
-        max_of(box.upper, max_of(top + Vec3d{upper, upper, upper}, bottom + Vec3d{lower, lower, lower}));
-  }
-  return box;
-}
 
 // Squared distances from a coordinate to the nearest and the farthest point of a cell along one axis.
 struct AxisDistances {
@@ -167,10 +131,9 @@ struct EnterLayer {
   AERATE_HD void operator()(std::size_t i) const {
     const std::uint32_t id = first_ball + static_cast<std::uint32_t>(i / layers);
     const Ball ball = grid.balls[id];
-    const double outer = ball.radius + grid.gap + grid.reach;
     // Half the gap belongs to each ball: cells inside two balls at once cannot be.
     const double inner = ball.radius + 0.5 * grid.gap;
-    const Box3d influence = box_of_influence(grid, ball);
+    const Box3d influence = grid.shape.box_of_influence(ball, grid.gap, grid.reach);
     const CellBox range(grid.cells, influence.lower, influence.upper);
     const std::uint32_t z = range.z0 + static_cast<std::uint32_t>(i % layers);
     if (z > range.z1) return;
@@ -180,10 +143,11 @@ struct EnterLayer {
       const AxisDistances dy(ball.centre.y, grid.cells.origin.y, grid.cells.cell_size, y);
       for (std::uint32_t x = range.x0; x <= range.x1; ++x) {
         const AxisDistances dx(ball.centre.x, grid.cells.origin.x, grid.cells.cell_size, x);
-        if constexpr (Shape::kHasRoof) {
-          if (!is_in_reach(ball, x, y, z)) continue;
-        } else {
-          if (dx.nearest_squared + dy.nearest_squared + dz.nearest_squared > outer * outer) continue;
+        const double nearest_squared = dx.nearest_squared + dy.nearest_squared + dz.nearest_squared;
+        const Vec3d middle = grid.cells.origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * grid.cells.cell_size;
+        if (!grid.shape.may_touch(ball, grid.gap, grid.reach, nearest_squared, middle,
+                                  grid.cells.cell_size)) {
+          continue;
         }
         const std::size_t cell = grid.cells.index(x, y, z);
         const bool inside = dx.farthest_squared + dy.farthest_squared + dz.farthest_squared <= inner * inner;
@@ -195,7 +159,7 @@ struct EnterLayer {
           }
         } else if (!inside) {
           const std::uint32_t head = atomic_load(grid.heads[cell]);
-          if (head == BallGridView<Shape>::kEmpty || (head & BallGridView<Shape>::kInsideBit) == 0) {
+          if (head == kNone || (head & BallGridView<Shape>::kInsideBit) == 0) {
             grid.entries[entry].ball = id;
             grid.entries[entry].next = atomic_exchange(grid.heads[cell], entry);
             ++entry;
@@ -204,15 +168,6 @@ struct EnterLayer {
       }
     }
     if (pass == EnterPass::mark_inside_and_count) first_entries[i] = atomic_add(entry_count[0], entry);
-  }
-
- private:
-  // Clearances change by no more than the way from the cell's middle.
-  AERATE_HD bool is_in_reach(const Ball& ball, std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
-    constexpr double kHalfDiagonal = 0.86602540378443865 * (1 + 1e-9);
-    const Vec3d middle = grid.cells.origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * grid.cells.cell_size;
-    const double clearance = radius_beside(grid.shape.roof, middle, ball.centre, ball.radius, grid.gap).value;
-    return clearance - kHalfDiagonal * grid.cells.cell_size <= grid.reach;
   }
 };
 
@@ -273,7 +228,7 @@ class BallGrid {
       heads_ = executor_.template allocate<std::uint32_t>(count);
     }
     view_.heads = {heads_.view().data, count};
-    executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, BallGridView<Shape>::kEmpty});
+    executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, kNone});
     executor_.for_each_index(1, SetAll<std::uint32_t>{entry_count_.view(), 0});
     entries_.clear();
     for (std::size_t k = 0; k < groups_.size(); ++k) {
@@ -308,11 +263,8 @@ class BallGrid {
 
   void enter(std::size_t first, std::size_t last, double largest) {
     using namespace ball_grid_detail;
-    double across = 2 * (largest + view_.gap + view_.reach);
-    if constexpr (Shape::kHasRoof) {
-      across += view_.shape.head_start(largest) + view_.shape.head_start(view_.reach);
-    }
-    across *= view_.cells.cells_per_mm;
+    const double beside = view_.shape.span(2 * (largest + view_.gap + view_.reach), largest);
+    const double across = view_.shape.span(beside, view_.reach) * view_.cells.cells_per_mm;
     const auto layers = static_cast<std::uint32_t>(min_of(across + 3, view_.cells.count_z * 1.0));
     const std::size_t at_a_time = max_of(most_at_a_time_ / layers, std::size_t{1});
     for (std::size_t begin = first; begin < last; begin += at_a_time) {

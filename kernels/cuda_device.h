@@ -35,6 +35,9 @@ class CudaError : public std::runtime_error {
 inline constexpr const char* kTooLittleMemoryHint =
     "close other programs that use the device, or run on the CPU";
 
+// What is said where CUDA was left out.
+inline constexpr const char* kNoCuda = "this build has no CUDA";
+
 // What the CUDA executor was built with ("CUDA 13.0, for 75-virtual"); empty if it was left out.
 std::string cuda_build();
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <tbb/blocked_range.h>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/constants.h"
 #include "kernels/tally.h"
 #include "kernels/view.h"
 
@@ -30,7 +30,8 @@
 //   exclusive_scan(in, out)          out[i] = in[0] + ... + in[i-1]; returns the sum of all (64 bit, whatever
 //                                    the offsets are); `in` and `out` are different memory
 //   sort_pairs(keys, values)         both by (key, value) ascending; values ascend already
-//   free_bytes()                     what could still be allocated, for those who can do with less
+//   free_bytes()                     what could still be allocated, for those who can do with less, or
+//                                    kAsMuchAsIsWanted
 //   kLeastPiece                      smaller pieces of work than this cost more than they are worth
 //
 // and nothing else, so that one template over the executor is the algorithm for every processor, and every
@@ -80,7 +81,7 @@ class HostMemory {
   }
 
   // The host's memory is no concern of the executor: jobs that need too much are refused before they start.
-  std::size_t free_bytes() const { return std::numeric_limits<std::size_t>::max(); }
+  std::size_t free_bytes() const { return kAsMuchAsIsWanted; }
 };
 
 // One thread, in index order: the reference the others are tested against.

@@ -70,132 +70,95 @@ void check(cudaError_t error, const std::string& call) {
 
 namespace cuda_detail {
 
-class Queue {
- public:
-  explicit Queue(int device) {
-    check(cudaSetDevice(device), "cudaSetDevice(" + std::to_string(device) + ")");
-    cudaMemPoolProps properties{};
-    properties.allocType = cudaMemAllocationTypePinned;
-    properties.location = {cudaMemLocationTypeDevice, device};
-    check(cudaMemPoolCreate(&pool_, &properties), "cudaMemPoolCreate");
-    std::uint64_t keep_all = ~std::uint64_t{0};
-    const char* call = "cudaMemPoolSetAttribute";
-    cudaError_t error = cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep_all);
-    if (error == cudaSuccess) {
-      call = "cudaStreamCreateWithFlags";
-      error = cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking);
-    }
-    if (error != cudaSuccess) {
-      cudaMemPoolDestroy(pool_);
-      fail(error, call);
-    }
+Queue::Queue(int device) {
+  check(cudaSetDevice(device), "cudaSetDevice(" + std::to_string(device) + ")");
+  cudaMemPoolProps properties{};
+  properties.allocType = cudaMemAllocationTypePinned;
+  properties.location = {cudaMemLocationTypeDevice, device};
+  check(cudaMemPoolCreate(&pool_, &properties), "cudaMemPoolCreate");
+  std::uint64_t keep_all = ~std::uint64_t{0};
+  const char* call = "cudaMemPoolSetAttribute";
+  cudaError_t error = cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep_all);
+  if (error == cudaSuccess) {
+    call = "cudaStreamCreateWithFlags";
+    error = cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking);
   }
-  Queue(const Queue&) = delete;
-  Queue& operator=(const Queue&) = delete;
-  ~Queue() {
-    if (scratch_ != nullptr) free(scratch_);
-    cudaStreamSynchronize(stream_);
-    cudaStreamDestroy(stream_);
+  if (error != cudaSuccess) {
     cudaMemPoolDestroy(pool_);
+    fail(error, call);
+  }
+}
+
+Queue::~Queue() {
+  if (scratch_ != nullptr) free(scratch_);
+  cudaStreamSynchronize(stream_);
+  cudaStreamDestroy(stream_);
+  cudaMemPoolDestroy(pool_);
+  cudaGetLastError();
+}
+
+void* Queue::allocate(std::size_t bytes) {
+  if (bytes == 0) return nullptr;
+  void* memory = nullptr;
+  cudaError_t error = cudaMallocFromPoolAsync(&memory, bytes, pool_, stream_);
+  if (error == cudaErrorMemoryAllocation) {
+    // What was freed in the queue but is not yet reusable may be all that is missing.
     cudaGetLastError();
+    wait("cudaStreamSynchronize");
+    cudaMemPoolTrimTo(pool_, 0);
+    error = cudaMallocFromPoolAsync(&memory, bytes, pool_, stream_);
   }
-
-  cudaStream_t stream() const { return stream_; }
-
-  void* allocate(std::size_t bytes) {
-    if (bytes == 0) return nullptr;
-    void* memory = nullptr;
-    cudaError_t error = cudaMallocFromPoolAsync(&memory, bytes, pool_, stream_);
-    if (error == cudaErrorMemoryAllocation) {
-      // What was freed in the queue but is not yet reusable may be all that is missing.
-      cudaGetLastError();
-      wait("cudaStreamSynchronize");
-      cudaMemPoolTrimTo(pool_, 0);
-      error = cudaMallocFromPoolAsync(&memory, bytes, pool_, stream_);
-    }
-    check(error, "cudaMallocFromPoolAsync of " + std::to_string(bytes) + " bytes");
-    return memory;
-  }
-
-  void free(void* memory) noexcept {
-    if (cudaFreeAsync(memory, stream_) != cudaSuccess) cudaGetLastError();
-  }
-
-  void* scratch(std::size_t bytes) {
-    if (bytes <= scratch_bytes_) return scratch_;
-    if (scratch_ != nullptr) free(std::exchange(scratch_, nullptr));
-    scratch_bytes_ = 0;
-    const std::size_t granted = std::max(bytes + bytes / 2, kLeastScratch);
-    scratch_ = allocate(granted);
-    scratch_bytes_ = granted;
-    return scratch_;
-  }
-
-  void launched(const std::type_info& functor) {
-    const cudaError_t error = cudaGetLastError();
-    if (error != cudaSuccess) fail(error, "launch of the kernel " + readable_name(functor));
-    last_kernel_ = &functor;
-  }
-
-  // A fault in a kernel shows in whatever call comes next.
-  void check_after_kernels(cudaError_t error, const std::string& call) const {
-    if (error == cudaSuccess) return;
-    fail(error, last_kernel_ == nullptr ? call : call + " after the kernel " + readable_name(*last_kernel_));
-  }
-
-  void wait(const std::string& call) const { check_after_kernels(cudaStreamSynchronize(stream_), call); }
-
-  std::size_t free_bytes() const {
-    std::size_t free = 0, total = 0;
-    check_after_kernels(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
-    std::uint64_t reserved = 0, used = 0;
-    check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrReservedMemCurrent, &reserved),
-          "cudaMemPoolGetAttribute");
-    check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemCurrent, &used), "cudaMemPoolGetAttribute");
-    return free + (reserved > used ? reserved - used : 0);
-  }
-
- private:
-  static constexpr std::size_t kLeastScratch = 4096;
-
-  cudaMemPool_t pool_ = nullptr;
-  cudaStream_t stream_ = nullptr;
-  void* scratch_ = nullptr;
-  std::size_t scratch_bytes_ = 0;
-  const std::type_info* last_kernel_ = nullptr;
-};
-
-void* allocate(Queue& queue, std::size_t bytes) {
-  return queue.allocate(bytes);
+  check(error, "cudaMallocFromPoolAsync of " + std::to_string(bytes) + " bytes");
+  return memory;
 }
 
-void free(Queue& queue, void* memory) noexcept {
-  queue.free(memory);
+void Queue::free(void* memory) noexcept {
+  if (cudaFreeAsync(memory, stream_) != cudaSuccess) cudaGetLastError();
 }
 
-void copy_to_device(Queue& queue, void* to, const void* from, std::size_t bytes) {
+void Queue::copy_to_device(void* to, const void* from, std::size_t bytes) {
   if (bytes == 0) return;
-  queue.check_after_kernels(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, queue.stream()),
-                            "cudaMemcpyAsync of " + std::to_string(bytes) + " bytes to the device");
+  check_after_kernels(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream_),
+                      "cudaMemcpyAsync of " + std::to_string(bytes) + " bytes to the device");
 }
 
-void copy_to_host(Queue& queue, void* to, const void* from, std::size_t bytes) {
+void Queue::copy_to_host(void* to, const void* from, std::size_t bytes) {
   if (bytes == 0) return;
   const std::string call = "cudaMemcpyAsync of " + std::to_string(bytes) + " bytes to the host";
-  queue.check_after_kernels(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, queue.stream()), call);
-  queue.wait(call);
+  check_after_kernels(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream_), call);
+  wait(call);
 }
 
-CUstream_st* stream(Queue& queue) {
-  return queue.stream();
+void* Queue::scratch(std::size_t bytes) {
+  constexpr std::size_t kLeast = 4096;
+  if (bytes <= scratch_bytes_) return scratch_;
+  if (scratch_ != nullptr) free(std::exchange(scratch_, nullptr));
+  scratch_bytes_ = 0;
+  const std::size_t granted = std::max(bytes + bytes / 2, kLeast);
+  scratch_ = allocate(granted);
+  scratch_bytes_ = granted;
+  return scratch_;
 }
 
-void* scratch(Queue& queue, std::size_t bytes) {
-  return queue.scratch(bytes);
+std::size_t Queue::free_bytes() const {
+  std::size_t free = 0, total = 0;
+  check_after_kernels(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
+  std::uint64_t reserved = 0, used = 0;
+  check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrReservedMemCurrent, &reserved),
+        "cudaMemPoolGetAttribute");
+  check(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemCurrent, &used), "cudaMemPoolGetAttribute");
+  return free + (reserved > used ? reserved - used : 0);
 }
 
-void check_launch(Queue& queue, const std::type_info& functor) {
-  queue.launched(functor);
+void Queue::check_launch(const std::type_info& functor) {
+  const cudaError_t error = cudaGetLastError();
+  if (error != cudaSuccess) fail(error, "launch of the kernel " + readable_name(functor));
+  last_kernel_ = &functor;
+}
+
+void Queue::check_after_kernels(cudaError_t error, const std::string& call) const {
+  if (error == cudaSuccess) return;
+  fail(error, last_kernel_ == nullptr ? call : call + " after the kernel " + readable_name(*last_kernel_));
 }
 
 }  // namespace cuda_detail
@@ -238,7 +201,7 @@ std::uint64_t CudaExecutor::exclusive_scan(View<const std::uint32_t> in, View<st
                                           std::uint64_t{0}, in.size, queue_->stream());
   });
   std::uint64_t sum = 0;
-  cuda_detail::copy_to_host(*queue_, &sum, total.view().data, sizeof sum);
+  queue_->copy_to_host(&sum, total.view().data, sizeof sum);
   return sum;
 }
 
@@ -261,10 +224,6 @@ void CudaExecutor::sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> valu
   };
   bring_home(keys.data, key_buffers.Current(), keys.size * sizeof(std::uint64_t));
   bring_home(values.data, value_buffers.Current(), values.size * sizeof(std::uint32_t));
-}
-
-std::size_t CudaExecutor::free_bytes() const {
-  return queue_->free_bytes();
 }
 
 std::string cuda_build() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <typeinfo>
 #include <utility>
@@ -13,29 +14,46 @@
 #include "kernels/tally.h"
 #include "kernels/view.h"
 
-// The executor that runs kernels on a CUDA device: the interface of exec_cpu.h. Host code may include this
-// header; only nvcc sees what launches kernels.
-
-struct CUstream_st;
+// The executor that runs kernels on a CUDA device: the interface of exec_cpu.h. For nvcc alone.
 
 namespace aerate::kernels {
 
 namespace cuda_detail {
 
-// The stream and the memory pool that an executor and its buffers share.
-class Queue;
+// The stream and the memory pool that an executor and its buffers share. All members throw CudaError but
+// those that cannot.
+class Queue {
+ public:
+  explicit Queue(int device);
+  ~Queue();
+  Queue(const Queue&) = delete;
+  Queue& operator=(const Queue&) = delete;
 
-void* allocate(Queue& queue, std::size_t bytes);
-void free(Queue& queue, void* memory) noexcept;
-void copy_to_device(Queue& queue, void* to, const void* from, std::size_t bytes);
-// Waits for all work of the queue.
-void copy_to_host(Queue& queue, void* to, const void* from, std::size_t bytes);
-CUstream_st* stream(Queue& queue);
-// Memory for the temporaries of one operation: valid until the next operation that asks for some.
-void* scratch(Queue& queue, std::size_t bytes);
-// After each launch: throws if it failed; its name goes into later errors, since a kernel's own fault only
-// shows in a later call.
-void check_launch(Queue& queue, const std::type_info& functor);
+  cudaStream_t stream() const { return stream_; }
+  void* allocate(std::size_t bytes);
+  void free(void* memory) noexcept;
+  void copy_to_device(void* to, const void* from, std::size_t bytes);
+  // Waits for all work of the queue.
+  void copy_to_host(void* to, const void* from, std::size_t bytes);
+  // Memory for the temporaries of one operation: valid until the next operation that asks for some.
+  void* scratch(std::size_t bytes);
+  std::size_t free_bytes() const;
+
+  // After each launch: its name goes into later errors, since a kernel's own fault only shows in a later
+  // call.
+  void check_launch(const std::type_info& functor);
+  // For a call in which a fault of a kernel may show.
+  void check_after_kernels(cudaError_t error, const std::string& call) const;
+
+ private:
+  void wait(const std::string& call) const { check_after_kernels(cudaStreamSynchronize(stream_), call); }
+
+  cudaMemPool_t pool_ = nullptr;
+  cudaStream_t stream_ = nullptr;
+  void* scratch_ = nullptr;
+  std::size_t scratch_bytes_ = 0;
+  const std::type_info* last_kernel_ = nullptr;
+};
 
 }  // namespace cuda_detail
 
@@ -47,9 +65,7 @@ class CudaBuffer {
  public:
   CudaBuffer() = default;
   CudaBuffer(std::shared_ptr<cuda_detail::Queue> queue, std::size_t size)
-      : queue_(std::move(queue)),
-        data_(static_cast<T*>(cuda_detail::allocate(*queue_, size * sizeof(T)))),
-        size_(size) {}
+      : queue_(std::move(queue)), data_(static_cast<T*>(queue_->allocate(size * sizeof(T)))), size_(size) {}
   CudaBuffer(CudaBuffer&& other) noexcept
       : queue_(std::move(other.queue_)),
         data_(std::exchange(other.data_, nullptr)),
@@ -61,7 +77,7 @@ class CudaBuffer {
     return *this;
   }
   ~CudaBuffer() {
-    if (data_ != nullptr) cuda_detail::free(*queue_, data_);
+    if (data_ != nullptr) queue_->free(data_);
   }
 
   View<T> view() { return {data_, size_}; }
@@ -74,7 +90,6 @@ class CudaBuffer {
   std::size_t size_ = 0;
 };
 
-#if defined(__CUDACC__)
 namespace cuda_detail {
 
 // Small blocks, since kernels that handle a triangle in fp64 need up to 220 registers.
@@ -196,7 +211,6 @@ __global__ void __launch_bounds__(kSelectBlock, 1)
 }
 
 }  // namespace cuda_detail
-#endif
 
 // Runs everything in order on one stream of one device; launches return at once, downloads and scans wait.
 // Memory comes from a pool of the executor's own, so that allocating in a loop costs nothing, and all goes
@@ -219,24 +233,23 @@ class CudaExecutor {
   template <typename T>
   CudaBuffer<T> upload(std::span<const T> source) const {
     CudaBuffer<T> buffer(queue_, source.size());
-    cuda_detail::copy_to_device(*queue_, buffer.view().data, source.data(), source.size_bytes());
+    queue_->copy_to_device(buffer.view().data, source.data(), source.size_bytes());
     return buffer;
   }
 
   template <typename T>
   std::vector<std::remove_const_t<T>> download(View<T> source) const {
     std::vector<std::remove_const_t<T>> copy(source.size);
-    cuda_detail::copy_to_host(*queue_, copy.data(), source.data, source.size * sizeof(T));
+    queue_->copy_to_host(copy.data(), source.data, source.size * sizeof(T));
     return copy;
   }
 
-#if defined(__CUDACC__)
   template <typename F>
   void for_each_index(std::size_t count, F f) const {
     if (count == 0) return;
     const unsigned blocks = blocks_of(count, cuda_detail::kBlock);
-    cuda_detail::run<F><<<blocks, cuda_detail::kBlock, 0, cuda_detail::stream(*queue_)>>>(f, count);
-    cuda_detail::check_launch(*queue_, typeid(F));
+    cuda_detail::run<F><<<blocks, cuda_detail::kBlock, 0, queue_->stream()>>>(f, count);
+    queue_->check_launch(typeid(F));
   }
 
   // One launch for a few thousand elements, else one for each step.
@@ -245,13 +258,13 @@ class CudaExecutor {
     using namespace cuda_detail;
     if (count == 0) return;
     if (count <= kMostInOneBlock) {
-      run_all_steps<F><<<1, kStepBlock, 0, stream(*queue_)>>>(f, steps, count);
-      check_launch(*queue_, typeid(F));
+      run_all_steps<F><<<1, kStepBlock, 0, queue_->stream()>>>(f, steps, count);
+      queue_->check_launch(typeid(F));
       return;
     }
     for (unsigned step = 0; step < steps; ++step) {
-      run_step<F><<<blocks_of(count, kBlock), kBlock, 0, stream(*queue_)>>>(f, step, count);
-      check_launch(*queue_, typeid(F));
+      run_step<F><<<blocks_of(count, kBlock), kBlock, 0, queue_->stream()>>>(f, step, count);
+      queue_->check_launch(typeid(F));
     }
   }
 
@@ -261,26 +274,25 @@ class CudaExecutor {
     using namespace cuda_detail;
     if (count == 0) return {};
     const unsigned blocks = count <= kMostInOneBlock ? 1 : blocks_of(count, kSelectTile);
-    auto* const total = static_cast<Tally*>(scratch(*queue_, (blocks + std::size_t{1}) * sizeof(Tally)));
+    auto* const total = static_cast<Tally*>(queue_->scratch((blocks + std::size_t{1}) * sizeof(Tally)));
     if (blocks == 1) {
-      select_in_one_block<<<1, kSelectBlock, 0, stream(*queue_)>>>(tally, emit, count, total);
+      select_in_one_block<<<1, kSelectBlock, 0, queue_->stream()>>>(tally, emit, count, total);
     } else {
-      select_sums<<<blocks, kSelectBlock, 0, stream(*queue_)>>>(tally, count, total + 1);
-      check_launch(*queue_, typeid(TallyOf));
-      select_emit<<<blocks, kSelectBlock, 0, stream(*queue_)>>>(tally, emit, count, total + 1, total);
+      select_sums<<<blocks, kSelectBlock, 0, queue_->stream()>>>(tally, count, total + 1);
+      queue_->check_launch(typeid(TallyOf));
+      select_emit<<<blocks, kSelectBlock, 0, queue_->stream()>>>(tally, emit, count, total + 1, total);
     }
-    check_launch(*queue_, typeid(Emit));
+    queue_->check_launch(typeid(Emit));
     Tally sum{};
-    copy_to_host(*queue_, &sum, total, sizeof sum);
+    queue_->copy_to_host(&sum, total, sizeof sum);
     return sum;
   }
-#endif
 
   std::uint64_t exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const;
   void sort_pairs(View<std::uint64_t> keys, View<std::uint32_t> values) const;
 
   // Bytes that could be allocated now; another process may be quicker.
-  std::size_t free_bytes() const;
+  std::size_t free_bytes() const { return queue_->free_bytes(); }
 
  private:
   static unsigned blocks_of(std::size_t count, std::size_t in_a_block) {

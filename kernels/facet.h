@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "kernels/constants.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
 
@@ -16,6 +17,20 @@ struct Facet {
   // By number, for loops over a facet in memory.
   AERATE_HD const Vec3f& corner(int i) const { return i == 0 ? a : i == 1 ? b : c; }
 };
+
+// A box that holds nothing, and to which anything can be added.
+AERATE_HD inline Box3f empty_box() {
+  constexpr auto kFar = static_cast<float>(kInfinity);
+  return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+}
+
+AERATE_HD inline Box3f box_of(const Facet& f) {
+  return {min_of(f.a, min_of(f.b, f.c)), max_of(f.a, max_of(f.b, f.c))};
+}
+
+AERATE_HD inline Box3f united(const Box3f& a, const Box3f& b) {
+  return {min_of(a.lower, b.lower), max_of(a.upper, b.upper)};
+}
 
 struct FacetIndices {
   std::uint32_t a, b, c;

@@ -2,10 +2,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 
-#include "kernels/atomic.h"
 #include "kernels/cell_grid.h"
+#include "kernels/cell_references.h"
 #include "kernels/facet.h"
 #include "kernels/point_triangle.h"
 #include "kernels/projected_triangle.h"
@@ -84,8 +83,6 @@ struct FacetGridView {
   }
 };
 
-namespace grid_detail {
-
 // The cells a facet is entered in: those it meets, by separating axes (the paper's test: the box's faces, the
 // facet's plane, and the nine pairs of edges as three projections).
 template <typename Visit>
@@ -128,33 +125,7 @@ AERATE_HD void for_each_cell(const CellGrid& grid, const Facet& facet, Visit vis
   }
 }
 
-struct CountReferences {
-  CellGrid grid;
-  View<const Facet> facets;
-  View<std::uint32_t> counts;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    const View<std::uint32_t> cells = counts;
-    for_each_cell(grid, facets[i], [cells](std::size_t cell) { atomic_add(cells[cell], 1); });
-  }
-};
-
-// The order inside a cell depends on timing; no query can see it ("is any nearer").
-struct FillReferences {
-  CellGrid grid;
-  View<const Facet> facets;
-  View<std::uint32_t> remaining;
-  View<const std::uint32_t> offsets;
-  View<std::uint32_t> references;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    const FillReferences self = *this;
-    for_each_cell(grid, facets[i], [self, i](std::size_t cell) {
-      const std::uint32_t slot = atomic_add(self.remaining[cell], ~std::uint32_t{0}) - 1;
-      self.references[self.offsets[cell] + slot] = static_cast<std::uint32_t>(i);
-    });
-  }
-};
+namespace grid_detail {
 
 // References up to and with a cell in its row along x, which the offsets tell.
 struct SumAlongRow {
@@ -186,12 +157,11 @@ struct SumAlongLine {
 
 template <typename Executor>
 struct FacetGrid {
-  typename Executor::template Buffer<std::uint32_t> offsets, references, summed;
+  CellReferences<Executor> cells;
+  typename Executor::template Buffer<std::uint32_t> summed;
   FacetGridView view;
 
-  std::size_t bytes() const {
-    return (offsets.size() + references.size() + summed.size()) * sizeof(std::uint32_t);
-  }
+  std::size_t bytes() const { return cells.bytes() + summed.size() * sizeof(std::uint32_t); }
 };
 
 // Enters the facets, which must stay alive beside the index. O(facets + cells + references).
@@ -202,24 +172,16 @@ FacetGrid<Executor> build_facet_grid(const Executor& executor, View<const Facet>
   const std::size_t cells = grid.cell_count();
   FacetGrid<Executor> index;
   index.summed = executor.template allocate<std::uint32_t>(cells + 1);
-  const View<std::uint32_t> counts = index.summed.view();
-  executor.for_each_index(cells + 1, SetAll<std::uint32_t>{counts, 0});
-  executor.for_each_index(facets.size, grid_detail::CountReferences{grid, facets, counts});
-
-  index.offsets = executor.template allocate<std::uint32_t>(cells + 1);
-  const View<std::uint32_t> offsets = index.offsets.view();
-  const std::uint64_t total = executor.exclusive_scan(counts, offsets);
-  if (total > 0xffffffffU) throw std::length_error("facet grid: more than 2^32 - 1 references");
-  index.references = executor.template allocate<std::uint32_t>(total);
-  executor.for_each_index(
-      facets.size, grid_detail::FillReferences{grid, facets, counts, offsets, index.references.view()});
+  const View<std::uint32_t> sums = index.summed.view();
+  index.cells = list_references(executor, facets, grid, sums);
+  const View<const std::uint32_t> offsets = index.cells.offsets.view();
 
   const std::size_t nx = grid.count_x, ny = grid.count_y, nz = grid.count_z;
-  executor.for_each_index(cells, grid_detail::SumAlongRow{offsets, nx, counts});
-  executor.for_each_index(nx * nz, grid_detail::SumAlongLine{counts, nx, nx * ny, 1, nx, ny});
-  executor.for_each_index(nx * ny, grid_detail::SumAlongLine{counts, nx * ny, 0, 1, nx * ny, nz});
+  executor.for_each_index(cells, grid_detail::SumAlongRow{offsets, nx, sums});
+  executor.for_each_index(nx * nz, grid_detail::SumAlongLine{sums, nx, nx * ny, 1, nx, ny});
+  executor.for_each_index(nx * ny, grid_detail::SumAlongLine{sums, nx * ny, 0, 1, nx * ny, nz});
 
-  index.view = {grid, facets, offsets, index.references.view(), counts};
+  index.view = {grid, facets, offsets, index.cells.references.view(), sums};
   return index;
 }
 

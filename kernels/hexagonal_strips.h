@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "kernels/hexagonal.h"
+#include "kernels/constants.h"
+#include "kernels/cuda_device.h"
+#include "kernels/hexagonal_packing.h"
 
 // The hexagonal packing of models whose index does not fit into the executor's memory: strip by strip along
 // y, each with the facets that its places can meet (for distances) or have above them (for winding numbers,
-// whose columns run along z). The result is that of `pack_hexagonal` to the bit, since no query can see how
-// facets are indexed.
+// whose columns run along z). The result is the same to the bit, since no query can see how facets are
+// indexed.
 
 namespace aerate::kernels {
 
@@ -99,5 +102,51 @@ HexagonalResult pack_hexagonal_in_strips(const Executor& executor, const Hexagon
   }
   return pieces.joined();
 }
+
+namespace hexagonal_detail {
+
+// As few strips as seem to fit, by powers of two. Throws CudaError (out_of_memory) if even single rows do
+// not.
+inline std::uint32_t strips_for(const HexagonalInput& input, std::uint32_t rows, std::size_t free_bytes) {
+  if (free_bytes == kAsMuchAsIsWanted) return 1;
+  const std::size_t usable = free_bytes / 10 * 9;
+  for (std::uint64_t strips = 1;; strips *= 2) {
+    const auto tried = static_cast<std::uint32_t>(min_of(strips, std::uint64_t{rows}));
+    const std::size_t needed = hexagonal_index_bytes(input, tried);
+    if (needed <= usable) return tried;
+    if (tried < rows) continue;
+    throw CudaError(CudaError::Kind::out_of_memory,
+                    "packing needs about " + std::to_string((needed >> 10) + 1) +
+                        " KiB of device memory even in the thinnest strips of the model, and " +
+                        std::to_string(free_bytes >> 10) + " KiB are free",
+                    kTooLittleMemoryHint);
+  }
+}
+
+}  // namespace hexagonal_detail
+
+// The whole job. The triangles go to the executor's memory once, strip by strip where their index does not
+// fit into what is free, and each sphere comes back once.
+struct HexagonalPacking {
+  using Input = HexagonalInput;
+  using Result = HexagonalResult;
+
+  template <typename Executor>
+  static HexagonalResult pack(const Executor& executor, const HexagonalInput& input) {
+    const HexagonalLattice lattice = make_hexagonal_lattice(input.box, input.parameters.lattice_radius);
+    const std::uint32_t rows = max_of(lattice.count_y, 1u);
+    std::uint32_t strips = hexagonal_detail::strips_for(input, rows, executor.free_bytes());
+    while (true) {
+      try {
+        return strips == 1 ? pack_hexagonal_at_once(executor, input)
+                           : pack_hexagonal_in_strips(executor, input, strips);
+      } catch (const CudaError& error) {
+        // The estimate was too low, or another program was quicker.
+        if (error.kind() != CudaError::Kind::out_of_memory || strips >= rows) throw;
+        strips = min_of(strips * 2, rows);
+      }
+    }
+  }
+};
 
 }  // namespace aerate::kernels

@@ -60,13 +60,6 @@ inline double void_volume(const Roof& roof, double radius) {
   return below + cone;
 }
 
-// How far a void reaches from its centre along a unit direction (its support function).
-inline double void_extent(const Roof& roof, double radius, Vec3d direction) {
-  const double rise = dot(direction, roof.up);
-  if (!roof.shapes(radius) || rise <= roof.sine) return radius;
-  return roof.top(radius) * rise + roof.flat_radius() * std::sqrt(max_of(0.0, 1 - rise * rise));
-}
-
 // Radius of the void round `centre` that `p` lies on: the least whose ball and cone, without end, hold p.
 inline double lateral_radius(const Roof& roof, Vec3d centre, Vec3d p) {
   const Vec3d offset = p - centre;

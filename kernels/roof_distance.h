@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "kernels/annotations.h"
+#include "kernels/constants.h"
 #include "kernels/facet.h"
 #include "kernels/point_triangle.h"
 #include "kernels/roof.h"
@@ -169,7 +169,7 @@ AERATE_HD inline double distance_to_facet(const Roof& roof, Vec3d centre, double
 inline double lateral_depth(const Roof& roof, Vec3d centre, double radius, const Facet& facet) {
   const double distance = std::sqrt(distance_squared_to_facet(centre, facet));
   if (!roof.limits_ceilings()) return radius - distance;
-  const roof_detail::FixedSpine spine{roof.sine, std::numeric_limits<double>::infinity()};
+  const roof_detail::FixedSpine spine{roof.sine, kInfinity};
   return radius - roof_detail::reach_facet(centre, roof.up, spine, facet, distance).value;
 }
 

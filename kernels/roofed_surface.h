@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "kernels/roof_distance.h"
 #include "kernels/triangle_bvh.h"
@@ -14,10 +13,20 @@ namespace aerate::kernels {
 // The largest radius of a void with a roof that keeps off the surface, and the facet that it touches.
 struct WidestVoid {
   double radius;
-  std::uint32_t facet;  // position in the hierarchy's own order, or kNoFacet
+  std::uint32_t facet;  // position in the hierarchy's own order, or kNone
 };
 
 namespace roofed_surface_detail {
+
+// At most what (distance to a box + t sine) is anywhere on a spine. Along it the distance changes by no more
+// than the height t does, whichever end it is known at, so it is least where the two bounds meet.
+AERATE_HD inline double least_along_spine(const Roof& roof, Vec3d foot, double spine, const Box3f& box) {
+  const double at_foot = std::sqrt(distance_squared_to_box(foot, box));
+  if (!(spine > 0)) return at_foot;
+  const double at_end = std::sqrt(distance_squared_to_box(foot + roof.up * spine, box));
+  const double height = min_of(max_of(0.5 * (at_foot - at_end + spine), 0.0), spine);
+  return at_foot - (1 - roof.sine) * height;
+}
 
 struct RadiusMetric {
   Roof roof;
@@ -27,14 +36,8 @@ struct RadiusMetric {
   double spine;  // of a void of the radius so far
   View<const Facet> facets;
 
-  // Along the spine the distance to a box changes by no more than the height does, whichever end it is known
-  // at; (distance + t sine) is then least where the two bounds meet.
   AERATE_HD double bound(const Box3f& box) const {
-    const double at_foot = std::sqrt(distance_squared_to_box(foot, box));
-    if (!(spine > 0)) return at_foot - clearance;
-    const double at_end = std::sqrt(distance_squared_to_box(foot + roof.up * spine, box));
-    const double height = min_of(max_of(0.5 * (at_foot - at_end + spine), 0.0), spine);
-    return at_foot - (1 - roof.sine) * height - clearance;
+    return least_along_spine(roof, foot, spine, box) - clearance;
   }
 
   AERATE_HD double limit() const { return best.radius; }
@@ -59,11 +62,7 @@ struct DistanceMetric {
   View<const Facet> facets;
 
   AERATE_HD double bound(const Box3f& box) const {
-    const double spine = roof.spine(radius);
-    const double at_foot = std::sqrt(distance_squared_to_box(centre, box));
-    const double at_end = std::sqrt(distance_squared_to_box(centre + roof.up * spine, box));
-    const double height = min_of(max_of(0.5 * (at_foot - at_end + spine), 0.0), spine);
-    return at_foot - (1 - roof.sine) * height - radius;
+    return least_along_spine(roof, centre, roof.spine(radius), box) - radius;
   }
   AERATE_HD double limit() const { return best; }
   AERATE_HD void visit(std::uint32_t i) {
@@ -86,7 +85,7 @@ AERATE_HD inline WidestVoid narrower_than(const TriangleBvhView& surface, const 
 // The same where nothing is known.
 AERATE_HD inline WidestVoid widest_void(const TriangleBvhView& surface, const Roof& roof, Vec3d foot,
                                         double clearance) {
-  const NearestFacet nearest = surface.nearest(foot, std::numeric_limits<double>::infinity());
+  const NearestFacet nearest = surface.nearest(foot, kInfinity);
   const double ball = std::sqrt(nearest.distance_squared) - clearance;
   if (!roof.shapes(ball)) return {ball, nearest.facet};
   return narrower_than(surface, roof, foot, clearance, {ball, nearest.facet});
@@ -95,7 +94,7 @@ AERATE_HD inline WidestVoid widest_void(const TriangleBvhView& surface, const Ro
 // Distance from a void to the surface, with the reserve above it that `distance_to_facet` has.
 AERATE_HD inline double distance_to_surface(const TriangleBvhView& surface, const Roof& roof, Vec3d centre,
                                             double radius) {
-  const NearestFacet nearest = surface.nearest(centre, std::numeric_limits<double>::infinity());
+  const NearestFacet nearest = surface.nearest(centre, kInfinity);
   const double ball = std::sqrt(nearest.distance_squared) - radius;
   if (!roof.shapes(radius)) return ball;
   roofed_surface_detail::DistanceMetric metric{roof, centre, radius, ball, surface.facets};

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "kernels/annotations.h"
+#include "kernels/view.h"
 
 namespace aerate::kernels {
 
@@ -13,6 +14,13 @@ struct Tally {
   friend AERATE_HD Tally operator+(Tally a, Tally b) {
     return {a.first + b.first, a.second + b.second, a.third + b.third};
   }
+};
+
+// For `select`: of elements that are marked with 1, and not with 0.
+struct TallyMarked {
+  View<const std::uint8_t> marks;
+
+  AERATE_HD Tally operator()(std::size_t i) const { return {marks[i], 0u, 0u}; }
 };
 
 }  // namespace aerate::kernels

@@ -12,8 +12,7 @@ struct Distances {
   View<double> distances;
 
   void operator()(std::size_t i) const {
-    distances[i] =
-        std::sqrt(bvh.nearest(points[i], std::numeric_limits<double>::infinity()).distance_squared);
+    distances[i] = std::sqrt(bvh.nearest(points[i], kInfinity).distance_squared);
   }
 };
 

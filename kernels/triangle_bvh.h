@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "kernels/constants.h"
 #include "kernels/facet.h"
 #include "kernels/point_triangle.h"
 #include "kernels/space_curve.h"
@@ -42,15 +42,9 @@ AERATE_HD inline double distance_squared_to_box(Vec3d p, const Box3f& box) {
   return x * x + y * y + z * z;
 }
 
-AERATE_HD inline Box3f box_of(const Facet& f) {
-  return {min_of(f.a, min_of(f.b, f.c)), max_of(f.a, max_of(f.b, f.c))};
-}
-
-inline constexpr std::uint32_t kNoFacet = 0xffffffffu;
-
 struct NearestFacet {
   double distance_squared;  // the limit if there is none within it
-  std::uint32_t facet;      // position in the hierarchy's own order, or kNoFacet
+  std::uint32_t facet;      // position in the hierarchy's own order, or kNone
 };
 
 struct TriangleBvhView {
@@ -64,7 +58,7 @@ struct TriangleBvhView {
   // Nearest facet closer than sqrt(limit_squared), which may be infinite. Of several at the same distance the
   // one that the walk meets first, which depends on p and the mesh only.
   AERATE_HD NearestFacet nearest(Vec3d p, double limit_squared) const {
-    return nearer_than(p, {limit_squared, kNoFacet});
+    return nearer_than(p, {limit_squared, kNone});
   }
 
   // The same where some facet and its distance are known already: `best` if no facet is nearer.
@@ -127,8 +121,6 @@ struct TriangleBvhView {
 
 namespace triangle_bvh_detail {
 
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 struct CurveKeys {
   View<const Facet> facets;
   CurveFrame frame;
@@ -156,14 +148,10 @@ struct LeafBoxes {
   std::uint32_t first_leaf;
 
   AERATE_HD void operator()(std::size_t leaf) const {
-    Box3f box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    Box3f box = empty_box();
     const std::size_t first = leaf * TriangleBvhView::kLeafFacets;
     const std::size_t last = min_of(first + TriangleBvhView::kLeafFacets, facets.size);
-    for (std::size_t i = first; i < last; ++i) {
-      const Box3f facet = box_of(facets[i]);
-      box.lower = min_of(box.lower, facet.lower);
-      box.upper = max_of(box.upper, facet.upper);
-    }
+    for (std::size_t i = first; i < last; ++i) box = united(box, box_of(facets[i]));
     boxes[first_leaf + leaf] = box;
   }
 };
@@ -174,9 +162,7 @@ struct InnerBoxes {
 
   AERATE_HD void operator()(std::size_t i) const {
     const std::size_t node = first_node + i;
-    const Box3f left = boxes[2 * node];
-    const Box3f right = boxes[2 * node + 1];
-    boxes[node] = {min_of(left.lower, right.lower), max_of(left.upper, right.upper)};
+    boxes[node] = united(boxes[2 * node], boxes[2 * node + 1]);
   }
 };
 

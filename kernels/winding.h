@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stdexcept>
-#include <vector>
 
-#include "kernels/atomic.h"
 #include "kernels/cell_grid.h"
+#include "kernels/cell_references.h"
 #include "kernels/facet.h"
 #include "kernels/projected_triangle.h"
 #include "kernels/vec.h"
@@ -108,12 +106,10 @@ struct WindingView {
   }
 };
 
-namespace winding_detail {
-
 // The columns a facet is entered in: those that its projection along z meets. Long diagonal facets would fill
 // the rectangle around them otherwise.
 template <typename Visit>
-AERATE_HD void for_each_column(const ColumnGrid& grid, const Facet& facet, Visit visit) {
+AERATE_HD void for_each_cell(const ColumnGrid& grid, const Facet& facet, Visit visit) {
   const Vec3d a = to_double(facet.a);
   const Vec3d b = to_double(facet.b);
   const Vec3d c = to_double(facet.c);
@@ -136,45 +132,12 @@ AERATE_HD void for_each_column(const ColumnGrid& grid, const Facet& facet, Visit
   }
 }
 
-struct CountReferences {
-  ColumnGrid grid;
-  View<const Facet> facets;
-  View<std::uint32_t> counts;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    const View<std::uint32_t> cells = counts;
-    for_each_column(grid, facets[i], [cells](std::size_t cell) { atomic_add(cells[cell], 1); });
-  }
-};
-
-// Fills each cell from its end towards its start. The order inside a cell depends on timing, which no query
-// can see: it adds integers.
-struct FillReferences {
-  ColumnGrid grid;
-  View<const Facet> facets;
-  View<std::uint32_t> remaining;
-  View<const std::uint32_t> offsets;
-  View<std::uint32_t> references;
-
-  AERATE_HD void operator()(std::size_t i) const {
-    const FillReferences self = *this;
-    for_each_column(grid, facets[i], [self, i](std::size_t cell) {
-      const std::uint32_t slot = atomic_add(self.remaining[cell], ~std::uint32_t{0}) - 1;
-      self.references[self.offsets[cell] + slot] = static_cast<std::uint32_t>(i);
-    });
-  }
-};
-
-}  // namespace winding_detail
-
 inline constexpr double kFacetsPerColumn = 6;
 
 template <typename Executor>
 struct WindingIndex {
-  typename Executor::template Buffer<std::uint32_t> offsets, references;
+  CellReferences<Executor> cells;
   WindingView view;
-
-  std::size_t bytes() const { return (offsets.size() + references.size()) * sizeof(std::uint32_t); }
 };
 
 // Indexes facets, which must stay alive beside the index. References grow
@@ -202,20 +165,10 @@ WindingIndex<Executor> build_winding_index(const Executor& executor, View<const 
     grid.count_y = static_cast<std::uint32_t>(depth / cell) + 1;
   }
   const std::size_t cells = static_cast<std::size_t>(grid.count_x) * grid.count_y;
-
   auto counts = executor.template allocate<std::uint32_t>(cells + 1);
-  executor.for_each_index(cells + 1, SetAll<std::uint32_t>{counts.view(), 0});
-  executor.for_each_index(facets.size, winding_detail::CountReferences{grid, facets, counts.view()});
-
   WindingIndex<Executor> index;
-  index.offsets = executor.template allocate<std::uint32_t>(cells + 1);
-  const std::uint64_t total = executor.exclusive_scan(counts.view(), index.offsets.view());
-  if (total > 0xffffffffu) throw std::length_error("winding index: more than 2^32 - 1 references");
-  index.references = executor.template allocate<std::uint32_t>(total);
-  executor.for_each_index(facets.size,
-                          winding_detail::FillReferences{grid, facets, counts.view(), index.offsets.view(),
-                                                         index.references.view()});
-  index.view = {grid, box, facets, index.offsets.view(), index.references.view()};
+  index.cells = list_references(executor, facets, grid, counts.view());
+  index.view = {grid, box, facets, index.cells.offsets.view(), index.cells.references.view()};
   return index;
 }
 
@@ -228,7 +181,7 @@ WindingIndex<Executor> build_winding_index(const Executor& executor, View<const 
 // Box of facets in host memory; empty (lower > upper) without any.
 Box3d bounding_box(View<const Facet> facets);
 
-// Winding numbers of many points with respect to one mesh, on all CPU threads, for host code.
+// Winding numbers with respect to one mesh, for host code.
 class HostWinding {
  public:
   HostWinding(std::span<const Vec3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles);
@@ -238,9 +191,8 @@ class HostWinding {
   HostWinding(HostWinding&&) noexcept;
   HostWinding& operator=(HostWinding&&) noexcept;
 
-  // For use in the caller's own loops; valid while this object lives.
+  // Valid while this object lives.
   const WindingView& view() const;
-  std::vector<int> winding_numbers(std::span<const Vec3d> points) const;
 
  private:
   struct Impl;

@@ -22,7 +22,7 @@
 #include "cli/process_options.h"
 #include "cli/slice_command.h"
 #include "core/error.h"
-#include "packing/device.h"
+#include "packing/device_choice.h"
 #include "pipeline/process_choice.h"
 
 namespace aerate::cli {

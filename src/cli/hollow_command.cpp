@@ -91,10 +91,7 @@ struct HollowCommand::Options {
     options.output = output;
     options.load = model.load();
     options.packing = packing.request();
-    if (!spheres.empty()) {
-      options.packing.method = PackingMethod::given;
-      options.packing.spheres = spheres;
-    }
+    options.packing.spheres = spheres;
     options.surface =
         std::map<std::string, SurfaceMode>{
             {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}

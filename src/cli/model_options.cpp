@@ -1,11 +1,15 @@
 #include "cli/model_options.h"
 
+#include <cctype>
 #include <fmt/format.h>
 #include <map>
+#include <string_view>
+#include <vector>
 
 #include "cli/numbers.h"
 #include "core/error.h"
-#include "packing/device.h"
+#include "packing/device_choice.h"
+#include "packing/methods.h"
 
 namespace aerate::cli {
 namespace {
@@ -16,6 +20,19 @@ const std::map<std::string, LengthUnit>& units() {
                                                         {"m", LengthUnit::metre},
                                                         {"inch", LengthUnit::inch}};
   return kUnits;
+}
+
+// The packings that --max-voids and --target-density can stop.
+std::string stoppable_packings() {
+  std::vector<std::string_view> names;
+  for (const PackingMethod& method : packing_methods())
+    if (!method.on_lattice) names.push_back(method.name);
+  return fmt::format("{} packing", fmt::join(names, " or "));
+}
+
+std::string capitalised(std::string text) {
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 }  // namespace
@@ -51,20 +68,24 @@ LoadOptions ModelOptions::load() const {
 
 PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile& config)
     : process_(command, config) {
+  const std::string stops = capitalised(stoppable_packings());
+  std::vector<std::string> methods, summaries;
+  for (const PackingMethod& method : packing_methods()) {
+    methods.emplace_back(method.name);
+    summaries.push_back(fmt::format("{} ({})", method.name, method.summary));
+  }
   command
-      .add_option(
-          "--packing", packing_,
-          "How spheres are packed: adaptive (the largest that fits first, densest) or hexagonal (a lattice)")
-      ->check(CLI::IsMember({"adaptive", "hexagonal"}))
+      .add_option("--packing", packing_,
+                  fmt::format("How spheres are packed: {}", fmt::join(summaries, " or ")))
+      ->check(CLI::IsMember(methods))
       ->type_name("METHOD")
       ->capture_default_str();
-  command
-      .add_option("--max-voids", max_voids_, "Adaptive packing: no more voids than this, the largest ones")
+  command.add_option("--max-voids", max_voids_, stops + ": no more voids than this, the largest ones")
       ->check(whole_number_between(1, 4e9, "voids"))
       ->type_name("N");
   command
       .add_option("--target-density", target_density_,
-                  "Adaptive packing: stop when voids fill this share of the model's volume, percent")
+                  stops + ": stop when voids fill this share of the model's volume, percent")
       ->check(number_between({}, 100, "%"))
       ->type_name("PERCENT");
   const auto is_device = [](const std::string& text) {
@@ -82,15 +103,13 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
 PackingRequest PackingCommandOptions::request() const {
   PackingRequest request;
   request.process = process_.choice();
-  if (packing_ == "hexagonal") keep_to_balls_without_roofs(request.process);
+  request.method = &packing_method(packing_);
+  if (request.method->on_lattice) keep_to_balls_without_roofs(request.process);
   request.limits = packing_limits(request.process);
   request.device = parse_device(device_).value();
-  if (packing_ == "hexagonal") {
-    request.method = PackingMethod::hexagonal;
-    if (max_voids_ || target_density_) {
-      throw UsageError("--max-voids and --target-density are for adaptive packing",
-                       "leave out --packing hexagonal");
-    }
+  if (request.method->on_lattice && (max_voids_ || target_density_)) {
+    throw UsageError(fmt::format("--max-voids and --target-density are for {}", stoppable_packings()),
+                     fmt::format("leave out --packing {}", packing_));
   }
   if (max_voids_) request.stop.max_count = static_cast<std::size_t>(*max_voids_);
   if (target_density_) request.stop.target_density = *target_density_ / 100;

@@ -39,7 +39,7 @@ struct PackingCommandOptions {
 
  private:
   ProcessOptions process_;
-  std::string packing_ = "adaptive";
+  std::string packing_{packing_methods().front().name};
   std::optional<double> max_voids_;
   std::optional<double> target_density_;  // percent
   std::string device_ = "auto";

@@ -71,9 +71,9 @@ Json json_of(const ProcessChoice& choice) {
           {"up", {{"direction", choice.direction.name}, {"origin", choice.direction.origin}}}};
 }
 
-Json json_of(PackingMethod method, const DeviceUse& device, double density,
+Json json_of(const std::string& method, const DeviceUse& device, double density,
              const PackingStatistics& statistics) {
-  return {{"method", name_of(method)},
+  return {{"method", method},
           {"device", {{"name", device.name}, {"reason", device.reason}}},
           {"density", density},
           {"candidates", statistics.candidates},

@@ -233,7 +233,7 @@ std::string to_text(const HollowReport& report) {
   add_limits(lines, report.process);
   lines.add("voids", "{}, radius {}; {} packing, {:.2f} % of the model",
             count_of(output.void_count, "sphere", "spheres"),
-            radii(output.smallest_radius, output.largest_radius), name_of(report.method),
+            radii(output.smallest_radius, output.largest_radius), report.method,
             100 * report.packing_density);
   add_device(lines, report.packing_device);
   add_volume(lines, report);
@@ -267,7 +267,7 @@ std::string to_text(const PackReport& report) {
   add_limits(lines, report.process);
   lines.add("spheres", "{}, radius {}; {} packing, {:.2f} % of the model",
             count_of(spheres.size(), "sphere", "spheres"), radii(smallest->radius, largest->radius),
-            name_of(report.method), 100 * report.density);
+            report.method, 100 * report.density);
   add_device(lines, report.packing.device);
   if (report.clearances) {
     lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})",

@@ -1,24 +1,8 @@
 #pragma once
 
-#include <cstddef>
-#include <limits>
-#include <optional>
-
-#include "core/device.h"
-#include "core/mesh.h"
-#include "core/monitor.h"
-#include "core/packing.h"
+#include "packing/methods.h"
 
 namespace aerate {
-
-struct AdaptiveOptions {
-  // Packing stops when there are this many spheres...
-  std::size_t max_count = std::numeric_limits<std::size_t>::max();
-  // ...or when they fill this share of the model's volume, in (0, 1)...
-  double target_density = 1.0;
-  // ...which is this, mm3, for a model whose shells overlap; else what its surface bounds.
-  std::optional<double> volume = std::nullopt;
-};
 
 // Largest void first: again and again a sphere where the clearance to the surface (less `wall`) and to the
 // spheres placed so far (less `gap`) is largest, down to `min_radius`. Where `max_radius` is small against
@@ -32,10 +16,9 @@ struct AdaptiveOptions {
 //   mesh: closed (Inspection::closed)
 // Throws UsageError for limits that contradict each other or would never end (no min_radius, count or
 // density).
-Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options,
+Packing pack_adaptive(const Mesh& mesh, const PackingLimits& limits, const PackingStop& stop,
                       Monitor& monitor, const DeviceRequest& device = {});
 
-// Bytes that `pack_adaptive` is going to need, about: for a refusal before work starts.
-double estimate_adaptive_bytes(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options);
+PackingMethod adaptive_method();
 
 }  // namespace aerate

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
 #include "core/error.h"
-#include "kernels/exec_cpu.h"
-#include "kernels/hexagonal.h"
-#include "kernels/hexagonal_cuda.h"
+#include "kernels/hexagonal_strips.h"
 #include "packing/run_on_device.h"
 
 namespace aerate {
@@ -48,17 +47,9 @@ kernels::CellGrid grid_for(const Box3d& box, std::size_t facets, const PackingLi
 }
 
 kernels::HexagonalInput input_for(const Mesh& mesh, const PackingLimits& limits, Monitor& monitor) {
-  const Box3f box = bounding_box(mesh);
-  kernels::HexagonalInput input;
-  input.positions = mesh.positions;
-  input.triangles = mesh.triangles;
-  input.box = {to_double(box.lower), to_double(box.upper)};
+  kernels::HexagonalInput input{packer_input(mesh, monitor)};
   input.grid = grid_for(input.box, mesh.triangles.size(), limits);
   input.parameters = parameters_for(input.box, limits);
-  input.progress = [&monitor](double share) {
-    monitor.progress(share);
-    monitor.check_interrupted();
-  };
   return input;
 }
 
@@ -80,12 +71,14 @@ WorkEstimate estimate_work(const Mesh& mesh, const kernels::HexagonalInput& inpu
           facets * (sizeof(Triangle) + sizeof(Vec3f)) + places * sizeof(Sphere)};
 }
 
-Packing packing_of(kernels::HexagonalResult result, const PackingLimits& limits) {
+Packing packing_of(OnDevice<kernels::HexagonalResult> packed, const PackingLimits& limits) {
+  kernels::HexagonalResult& result = packed.result;
   const auto count = [&](CandidateState state) {
     return static_cast<std::size_t>(result.state_counts[static_cast<std::size_t>(state)]);
   };
   Packing packing;
   packing.limits = limits;
+  packing.device = std::move(packed.use);
   packing.statistics.outside = count(CandidateState::outside);
   packing.statistics.overlapped_region = count(CandidateState::overlapped_region);
   packing.statistics.near_surface = count(CandidateState::near_surface);
@@ -106,9 +99,7 @@ double lattice_cells(Vec3d extent, double radius) {
          (extent.z / (kernels::HexagonalLattice::kLayer * radius) + 1);
 }
 
-}  // namespace
-
-double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits) {
+MemoryNeed memory_for(const Mesh& mesh, const PackingLimits& limits, const PackingStop& /*stop*/) {
   const Box3f box = bounding_box(mesh);
   const Vec3d extent = to_double(box.upper) - to_double(box.lower);
   const double radius = limits.max_radius + limits.gap / 2;
@@ -128,8 +119,22 @@ double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits) {
   const double slab = std::min(std::max(places, replaced), static_cast<double>(kernels::kMostSlots));
   // Of all places at most about three in four lie inside a box-filling model and are emitted (twice, while
   // they are copied).
-  return index_bytes + slab * static_cast<double>(kernels::kBytesPerSlot) +
-         (10 * cells + replaced) * 2 * sizeof(Sphere);
+  return {index_bytes + slab * static_cast<double>(kernels::kBytesPerSlot) +
+              (10 * cells + replaced) * 2 * sizeof(Sphere),
+          fmt::format("packing spheres of radius {:.3g} mm into this model", limits.max_radius),
+          "give a larger --max-radius: the number of spheres falls with its cube"};
+}
+
+}  // namespace
+
+PackingMethod hexagonal_method() {
+  return {
+      .name = "hexagonal",
+      .summary = "a lattice",
+      .on_lattice = true,
+      .memory = memory_for,
+      .pack = [](const Mesh& mesh, const PackingLimits& limits, const PackingStop& /*stop*/, Monitor& monitor,
+                 const DeviceRequest& device) { return pack_hexagonal(mesh, limits, monitor, device); }};
 }
 
 Packing pack_hexagonal(const Mesh& mesh, const PackingLimits& limits, Monitor& monitor,
@@ -141,17 +146,8 @@ Packing pack_hexagonal(const Mesh& mesh, const PackingLimits& limits, Monitor& m
     throw FailureError("the hexagonal packing would have more than 2^32 places", "raise --max-radius");
   }
   const kernels::HexagonalInput input = input_for(mesh, limits, monitor);
-  DeviceUse use;
-  const auto on_cpu = [&](DeviceRequest::Kind kind) {
-    return kind == DeviceRequest::Kind::cpu_one_thread
-               ? kernels::pack_hexagonal(kernels::SerialExecutor{}, input)
-               : kernels::pack_hexagonal(kernels::TbbExecutor{}, input);
-  };
-  const auto on_cuda = [&](int index) { return kernels::pack_hexagonal_on_cuda(index, input); };
-  Packing packing =
-      packing_of(run_on_device(device, estimate_work(mesh, input), monitor, use, on_cpu, on_cuda), limits);
-  packing.device = std::move(use);
-  return packing;
+  return packing_of(
+      run_on_device<kernels::HexagonalPacking>(device, estimate_work(mesh, input), monitor, input), limits);
 }
 
 }  // namespace aerate

@@ -1,15 +1,8 @@
 #pragma once
 
-#include "core/device.h"
-#include "core/mesh.h"
-#include "core/monitor.h"
-#include "core/packing.h"
+#include "packing/methods.h"
 
 namespace aerate {
-
-// Bytes that `pack_hexagonal` is going to need at most (index, candidates, result), from the bounding box and
-// the limits alone, so that a job can be refused before work starts.
-double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits);
 
 // Hexagonal (AB-stacked) layers with interstitial spheres and 61-sphere replacements after Cuba and Loaiza,
 // as docs/packing.md states it: the lattice is built for `max_radius + gap/2`, each sphere's radius is then
@@ -20,5 +13,7 @@ double estimate_hexagonal_bytes(const Mesh& mesh, const PackingLimits& limits);
 // Throws FailureError if the job needs more than 2^32 places, or if the device that was asked for fails.
 Packing pack_hexagonal(const Mesh& mesh, const PackingLimits& limits, Monitor& monitor,
                        const DeviceRequest& device = {});
+
+PackingMethod hexagonal_method();
 
 }  // namespace aerate

@@ -1,12 +1,14 @@
 #pragma once
 
-#include <string>
 #include <utility>
 
 #include "core/device.h"
 #include "core/error.h"
+#include "core/mesh.h"
 #include "core/monitor.h"
 #include "kernels/cuda_device.h"
+#include "kernels/exec_cpu.h"
+#include "kernels/packer.h"
 
 namespace aerate {
 
@@ -26,22 +28,33 @@ DeviceChoice choose_device(const DeviceRequest& request, const WorkEstimate& wor
 // A CUDA failure as an error of the job, with what the user can do about it.
 FailureError device_failure(const kernels::CudaError& error);
 
-// Runs a job where it was asked to run: `on_cpu(kind)` or `on_cuda(index)`. When the choice was left to the
-// program, a failing device gives way to the CPU, with a notice. Says in `use` where it ran.
-template <typename OnCpu, typename OnCuda>
-auto run_on_device(const DeviceRequest& request, const WorkEstimate& work, Monitor& monitor, DeviceUse& use,
-                   OnCpu on_cpu, OnCuda on_cuda) {
+// The model as every packer (kernels/packer.h) takes it; both arguments must outlive it.
+kernels::PackerInput packer_input(const Mesh& mesh, Monitor& monitor);
+
+template <typename Result>
+struct OnDevice {
+  Result result;
+  DeviceUse use;
+};
+
+// Runs a packer where it was asked to run. When the choice was left to the program, a failing device gives
+// way to the CPU, with a notice.
+template <typename Packer>
+OnDevice<typename Packer::Result> run_on_device(const DeviceRequest& request, const WorkEstimate& work,
+                                                Monitor& monitor, const typename Packer::Input& input) {
   DeviceChoice choice = choose_device(request, work);
-  use = std::move(choice.use);
-  if (choice.request.kind != DeviceRequest::Kind::cuda) return on_cpu(choice.request.kind);
-  try {
-    return on_cuda(choice.request.index);
-  } catch (const kernels::CudaError& error) {
-    if (request.kind == DeviceRequest::Kind::cuda) throw device_failure(error);
-    monitor.notice(use.name + " gave up, packing on the CPU instead: " + error.what());
-    use = {"cpu", use.name + " failed: " + error.what()};
+  if (choice.request.kind == DeviceRequest::Kind::cpu_one_thread)
+    return {Packer::pack(kernels::SerialExecutor{}, input), std::move(choice.use)};
+  if (choice.request.kind == DeviceRequest::Kind::cuda) {
+    try {
+      return {kernels::pack_on_cuda<Packer>(choice.request.index, input), std::move(choice.use)};
+    } catch (const kernels::CudaError& error) {
+      if (request.kind == DeviceRequest::Kind::cuda) throw device_failure(error);
+      monitor.notice(choice.use.name + " gave up, packing on the CPU instead: " + error.what());
+      choice.use = {"cpu", choice.use.name + " failed: " + error.what()};
+    }
   }
-  return on_cpu(DeviceRequest::Kind::cpu);
+  return {Packer::pack(kernels::TbbExecutor{}, input), std::move(choice.use)};
 }
 
 }  // namespace aerate

@@ -2,22 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include "kernels/constants.h"
 #include "kernels/roof_distance.h"
+#include "kernels/void_shape.h"
 
 namespace aerate {
 namespace {
-
-// How much nearer to another sphere a roof may bring one.
-double head_start(const Roof& roof, double radius) {
-  return (1 - roof.sine) * roof.spine(radius);
-}
 
 // The spheres of one radius class, sorted by the cell of their centre. A cell is as wide as the farthest that
 // two spheres of the class can be apart and still be a pair, so that neighbours are in adjacent cells.
@@ -81,8 +77,7 @@ struct Classes {
 
 Classes classify(std::span<const Sphere> spheres, double reach) {
   std::map<int, std::vector<std::uint32_t>> members;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3d origin{kInfinity, kInfinity, kInfinity};
+  Vec3d origin{kernels::kInfinity, kernels::kInfinity, kernels::kInfinity};
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     int exponent = 0;
     // Spheres smaller than the reach share a class: their cells would be no smaller.
@@ -116,7 +111,7 @@ std::vector<SpherePair> find_pairs_within(std::span<const Sphere> spheres, doubl
       // The smaller of a pair looks among the larger: these have wide cells, so 27 of them are all there is.
       for (std::size_t k = own_class; k < classes.by_radius.size(); ++k) {
         const double largest = classes.by_radius[k].largest_radius();
-        const double distance = sphere.radius + largest + reach + head_start(roof, largest);
+        const double distance = kernels::RoofedShape{roof}.span(sphere.radius + largest + reach, largest);
         classes.by_radius[k].for_each_near(sphere.centre, distance, [&](std::uint32_t j) {
           if (k == own_class && j <= i) return;
           const double gap = kernels::distance_between(roof, sphere.centre, sphere.radius, spheres[j].centre,

@@ -133,7 +133,7 @@ Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
 
 Vec3d TubeClearance::normal_near(Vec3d point) const {
   kernels::NearestFacet nearest = bvh_.nearest(point, kOnSurface * kOnSurface);
-  if (nearest.facet == kernels::kNoFacet) nearest = bvh_.nearest(point, kInfinity);
+  if (nearest.facet == kernels::kNone) nearest = bvh_.nearest(point, kInfinity);
   const kernels::Facet& facet = bvh_.facets[nearest.facet];
   const Vec3d a = to_double(facet.a);
   const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tbb/parallel_for.h>
 
+#include "kernels/constants.h"
 #include "kernels/roof_distance.h"
 #include "kernels/roofed_surface.h"
 #include "kernels/triangle_bvh.h"
@@ -13,7 +14,7 @@
 namespace aerate {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using kernels::kInfinity;
 
 // A model's own fp32 coordinates are not better than this share of its size.
 constexpr double kRoundingShare = 1e-6;

@@ -4,8 +4,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "packing/adaptive.h"
-#include "packing/hexagonal.h"
 #include "pipeline/memory.h"
 #include "printing/carve.h"
 
@@ -37,26 +35,9 @@ void require(double needed, const std::string& what, const std::string& hint) {
 }  // namespace
 
 void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request) {
-  double needed = 0;
-  switch (request.method) {
-    case PackingMethod::adaptive:
-      needed = estimate_adaptive_bytes(mesh, request.limits, request.stop);
-      require(
-          needed,
-          fmt::format("packing spheres down to radius {:.3g} mm into this model", request.limits.min_radius),
-          "give a larger --min-radius (the number of spheres grows with the inverse of its cube), or limit "
-          "it "
-          "with --max-voids");
-      return;
-    case PackingMethod::given:
-      return;
-    case PackingMethod::hexagonal:
-      needed = estimate_hexagonal_bytes(mesh, request.limits);
-      break;
-  }
-  require(needed,
-          fmt::format("packing spheres of radius {:.3g} mm into this model", request.limits.max_radius),
-          "give a larger --max-radius: the number of spheres falls with its cube");
+  if (!request.spheres.empty()) return;
+  const MemoryNeed need = request.method->memory(mesh, request.limits, request.stop);
+  require(need.bytes, need.job, need.hint);
 }
 
 void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles) {

@@ -102,7 +102,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.input = model.input;
   report.limits = hollowed.request.limits;
   report.process = hollowed.request.process;
-  report.method = options.packing.method;
+  report.method = name_of_method(options.packing);
   report.packing_statistics = hollowed.packing.statistics;
   report.packing_density = total_volume(hollowed.packing) / model.inspection.filled_volume;
   report.packing_device = hollowed.packing.device;

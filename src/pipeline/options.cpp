@@ -2,16 +2,8 @@
 
 namespace aerate {
 
-const char* name_of(PackingMethod method) {
-  switch (method) {
-    case PackingMethod::adaptive:
-      return "adaptive";
-    case PackingMethod::given:
-      return "given";
-    case PackingMethod::hexagonal:
-      return "hexagonal";
-  }
-  return "unknown";
+std::string name_of_method(const PackingRequest& request) {
+  return request.spheres.empty() ? std::string(request.method->name) : "given";
 }
 
 }  // namespace aerate

@@ -10,7 +10,7 @@
 #include "core/packing.h"
 #include "files/load.h"
 #include "files/three_mf.h"
-#include "packing/adaptive.h"
+#include "packing/methods.h"
 #include "pipeline/process_choice.h"
 #include "printing/print_settings.h"
 
@@ -23,15 +23,6 @@ enum class SurfaceMode {
   remesh,     // the model becomes a level set and is meshed anew
 };
 
-enum class PackingMethod {
-  adaptive,
-  hexagonal,
-  given,  // read from a file
-};
-
-// As on the command line.
-const char* name_of(PackingMethod method);
-
 // What the figures for mass and cost are computed with.
 struct MaterialFigures {
   std::string name;
@@ -41,15 +32,18 @@ struct MaterialFigures {
 
 // How a model is to be packed.
 struct PackingRequest {
-  PackingMethod method = PackingMethod::adaptive;
+  const PackingMethod* method = &packing_methods().front();
   PackingLimits limits = kDefaultLimits;
   ProcessChoice process;          // what those limits are for, and where they came from
-  std::filesystem::path spheres;  // of the method `given`
-  AdaptiveOptions stop;           // when the adaptive method stops; the hexagonal one has no such choice
+  std::filesystem::path spheres;  // if not empty, these are taken and nothing is packed
+  PackingStop stop;               // for a method that is not on a lattice
   DeviceRequest device;
   // If given, `limits.min_radius` is the least with which a void saves filament in this print.
   std::optional<PrintSettings> pays_in = std::nullopt;
 };
+
+// For reports.
+std::string name_of_method(const PackingRequest& request);
 
 struct PackOptions {
   std::filesystem::path model;

@@ -8,8 +8,6 @@
 #include "core/error.h"
 #include "core/roof.h"
 #include "files/sphere_table.h"
-#include "packing/adaptive.h"
-#include "packing/hexagonal.h"
 #include "packing/verify.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
@@ -69,32 +67,23 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
 }
 
 // A lattice's places have room for spheres, not for roofs above them.
-void require_no_roofs(const PackingLimits& limits) {
-  if (!limits.roof.shapes(limits.max_radius)) return;
+void require_room_for_roofs(const PackingMethod& method, const PackingLimits& limits) {
+  if (!method.on_lattice || !limits.roof.shapes(limits.max_radius)) return;
   throw UsageError(
-      fmt::format("--packing hexagonal with spheres of --max-radius {:g} mm: their ceilings are wider than "
+      fmt::format("--packing {} with spheres of --max-radius {:g} mm: their ceilings are wider than "
                   "--bridge {:g} mm, and a lattice has no room for roofs",
-                  limits.max_radius, limits.roof.bridge()),
+                  method.name, limits.max_radius, limits.roof.bridge()),
       fmt::format("give --max-radius {:g} or less, or --packing adaptive; with --bridge {:g} spheres of this "
                   "size stay as they are",
                   largest_without_roof(limits.roof), std::ceil(2 * limits.max_radius)));
 }
 
 Packing pack_unverified(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
-  const Mesh& mesh = model.mesh;
-  switch (request.method) {
-    case PackingMethod::adaptive: {
-      AdaptiveOptions stop = request.stop;
-      stop.volume = model.inspection.filled_volume;
-      return pack_adaptive(mesh, request.limits, stop, monitor, request.device);
-    }
-    case PackingMethod::given:
-      return given_packing(mesh, request);
-    case PackingMethod::hexagonal:
-      require_no_roofs(request.limits);
-      return pack_hexagonal(mesh, request.limits, monitor, request.device);
-  }
-  throw FailureError("unknown packing method");
+  if (!request.spheres.empty()) return given_packing(model.mesh, request);
+  require_room_for_roofs(*request.method, request.limits);
+  PackingStop stop = request.stop;
+  stop.volume = model.inspection.filled_volume;
+  return request.method->pack(model.mesh, request.limits, stop, monitor, request.device);
 }
 
 // Says what would fit, and which limit stands in the way.
@@ -120,8 +109,8 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
                   limits.min_radius)
             : fmt::format("give a --wall well below {:.3g} mm", largest.radius));
   }
-  const bool is_adaptive = request.method == PackingMethod::adaptive;
-  if (request.pays_in && (fitting < limits.min_radius || is_adaptive)) {
+  const bool on_lattice = request.method->on_lattice;
+  if (request.pays_in && (fitting < limits.min_radius || !on_lattice)) {
     const std::string what_fits =
         fitting < limits.min_radius
             ? fmt::format("the largest that fits has radius {:.3g} mm, near {}", fitting, place)
@@ -142,14 +131,14 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --wall or --min-radius");
   }
-  if (is_adaptive && !limits.roof.shapes(limits.min_radius)) {
+  if (!on_lattice && !limits.roof.shapes(limits.min_radius)) {
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near "
                     "{}, but no place was found for one of --min-radius {:.3g} mm",
                     file, limits.wall, fitting, place, limits.min_radius),
         "give a smaller --min-radius or --wall");
   }
-  if (is_adaptive) {
+  if (!on_lattice) {
     throw NothingToRemoveError(
         fmt::format(
             "{}: nothing to remove: with a wall of {:.3g} mm a sphere of radius {:.3g} mm fits near {}, "
@@ -192,7 +181,7 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
 
   JobLog log(monitor);
   PackReport report;
-  report.method = options.packing.method;
+  report.method = name_of_method(options.packing);
   report.process = options.packing.process;
   report.output = options.output;
   PreparedModel model = load_and_inspect(options.model, options.load, log);

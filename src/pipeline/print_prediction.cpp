@@ -66,8 +66,7 @@ std::string where_voids_pay(double radius, const PrintSettings& settings) {
 
 PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptions& options,
                                        Monitor& monitor) {
-  if (!options.print || options.heavier == HeavierPrint::allow || request.method == PackingMethod::given)
-    return request;
+  if (!options.print || options.heavier == HeavierPrint::allow || !request.spheres.empty()) return request;
   const PrintSettings& settings = *options.print;
   const auto least_radius = break_even_radius(settings);
   if (!least_radius || *least_radius > request.limits.max_radius)

@@ -29,7 +29,7 @@ struct HollowReport {
   InputFacts input;
   PackingLimits limits;
   ProcessChoice process;
-  PackingMethod method = PackingMethod::adaptive;
+  std::string method;  // name_of_method
   PackingStatistics packing_statistics;
   double packing_density = 0;  // volume of the planned balls over that of the packed model
   DeviceUse packing_device;
@@ -81,7 +81,7 @@ struct PackReport {
   InputFacts input;
   std::filesystem::path output;
   ProcessChoice process;
-  PackingMethod method = PackingMethod::adaptive;
+  std::string method;  // name_of_method
   Packing packing;
   double density = 0;
   std::optional<Clearances> clearances;  // measured, fp64

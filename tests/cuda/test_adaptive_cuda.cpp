@@ -15,7 +15,7 @@ namespace {
 using AdaptiveCuda = test::CudaTest;
 using Kind = DeviceRequest::Kind;
 
-void expect_same_on_cuda(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options,
+void expect_same_on_cuda(const Mesh& mesh, const PackingLimits& limits, const PackingStop& options,
                          std::size_t least_spheres) {
   Monitor monitor;
   const Packing cpu = pack_adaptive(mesh, limits, options, monitor, {.kind = Kind::cpu});

@@ -53,7 +53,7 @@ struct Job {
     input.parameters.gap = kGap;
     input.parameters.min_radius = 0.5;
     input.parameters.max_count = 30;
-    balls = pack_adaptive(SerialExecutor{}, input).balls;
+    balls = AdaptivePacking<>::pack(SerialExecutor{}, input).balls;
   }
 };
 
@@ -101,7 +101,7 @@ struct AskField {
   AERATE_HD void operator()(std::size_t i) const {
     const Vec3d p = points[i];
     const NearestBall ball = field.balls.nearest(p, kReach);
-    SurfaceAnchor anchor = anchor_at(field, {p, 0, kNoFacet}, p);
+    SurfaceAnchor anchor = anchor_at(field, {p, 0, kNone}, p);
     Answer answer{ball.clearance, anchor.signed_distance, 0, 0, {0, 0, 0}, ball.ball, anchor.facet};
     // From an anchor some way off, and with less than all that is known asked for.
     const Vec3d q = p + Vec3d{0.07, -0.03, 0.05};
@@ -138,7 +138,7 @@ std::vector<Answer> ask_field(const Executor& executor, const Job& job) {
 TEST_F(AdaptiveKernelsCuda, QueriesOfTheField) {
   const Job job;
   const std::vector<Answer> expected = ask_field(SerialExecutor{}, job);
-  const auto near_ball = [](const Answer& a) { return a.ball != kNoBall; };
+  const auto near_ball = [](const Answer& a) { return a.ball != kNone; };
   const auto inside = [](const Answer& a) { return a.signed_distance > 0; };
   EXPECT_GT(std::count_if(expected.begin(), expected.end(), near_ball), 100);
   EXPECT_GT(std::count_if(expected.begin(), expected.end(), inside), 100);
@@ -155,11 +155,10 @@ std::vector<std::vector<std::uint32_t>> cells_of_grid(const Executor& executor, 
   std::vector<std::vector<std::uint32_t>> cells;
   for (const std::uint32_t head : executor.download(View<const std::uint32_t>(grid.heads))) {
     std::vector<std::uint32_t> cell;
-    if (head != BallGridView<BallShape>::kEmpty && (head & BallGridView<BallShape>::kInsideBit) != 0) {
+    if (head != kNone && (head & BallGridView<BallShape>::kInsideBit) != 0) {
       cell.push_back(head);
     } else {
-      for (std::uint32_t i = head; i != BallGridView<BallShape>::kEmpty; i = entries[i].next)
-        cell.push_back(entries[i].ball);
+      for (std::uint32_t i = head; i != kNone; i = entries[i].next) cell.push_back(entries[i].ball);
     }
     std::sort(cell.begin(), cell.end());
     cells.push_back(cell);
@@ -304,7 +303,7 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   auto order = executor.template allocate<std::uint32_t>(list.size());
   const std::size_t count =
       executor
-          .select(list.size(), TallyFound{found.view()},
+          .select(list.size(), TallyMarked{found.view()},
                   ListFound{searched.view(), found.view(), 0, candidates.view(), keys.view(), order.view()})
           .first;
   stages.candidates = bytes_at(executor, View<Candidate>{candidates.view().data, count});
@@ -321,7 +320,7 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   auto next = executor.template allocate<std::uint32_t>(count);
   grid.heads = heads.view();
   grid.next = next.view();
-  executor.for_each_index(heads.size(), SetAll<std::uint32_t>{heads.view(), kNoBall});
+  executor.for_each_index(heads.size(), SetAll<std::uint32_t>{heads.view(), kNone});
   auto ranked = executor.template allocate<Candidate>(count);
   auto even = executor.template allocate<Verdict>(count);
   auto odd = executor.template allocate<Verdict>(count);
@@ -363,7 +362,7 @@ std::pair<Bytes, Bytes> settle(const Executor& executor, const Job& job) {
   using namespace adaptive_detail;
   Packed<Executor> packed(executor, job);
   // Where the largest balls might go: points of a grid that are far enough from everything.
-  const Settling settling{0.4, 0.4};
+  const Settling settling{0.4};
   std::vector<Candidate> starts;
   for (const Vec3d& p : points_in(job.input.box, 3000)) starts.push_back({p, 0.45, 0.45});
   auto candidates = executor.upload(std::span<const Candidate>(starts));
@@ -407,7 +406,7 @@ std::pair<Bytes, Bytes> run_lattice(const Executor& executor, const Job& job, st
   executor.for_each_index(lattice.size(),
                           LatticeFit{packed.bvh.view, packed.winding.view, 0.5, lattice, 0, fits.view()});
   auto balls = executor.template allocate<Ball>(lattice.size());
-  const Tally total = executor.select(lattice.size(), TallyFitting{fits.view()},
+  const Tally total = executor.select(lattice.size(), TallyMarked{fits.view()},
                                       PlaceLattice{lattice, 0, fits.view(), 0.4, balls.view()});
   return {bytes_at(executor, fits.view()), bytes_at(executor, View<Ball>{balls.view().data, total.first})};
 }

@@ -4,9 +4,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "kernels/adaptive_cuda.h"
 #include "kernels/exec_cpu.h"
-#include "kernels/hexagonal_cuda.h"
 #include "packing/adaptive.h"
 #include "packing/hexagonal.h"
 #include "packing/run_on_device.h"
@@ -20,6 +18,25 @@
 // ctest run of this program has its own PTXVM_MEMORY_LIMIT.
 
 namespace aerate {
+namespace {
+struct PackerThatFailsOnCuda {
+  using Input = kernels::PackerInput;
+  using Result = std::string;
+
+  template <typename Executor>
+  static std::string pack(const Executor& /*executor*/, const Input& /*input*/) {
+    return "cpu";
+  }
+};
+}  // namespace
+
+namespace kernels {
+template <>
+std::string pack_on_cuda<PackerThatFailsOnCuda>(int /*device*/, const PackerInput& /*input*/) {
+  throw CudaError(CudaError::Kind::out_of_memory, "no room", "buy some");
+}
+}  // namespace kernels
+
 namespace {
 
 using Kind = DeviceRequest::Kind;
@@ -82,8 +99,8 @@ TEST_F(DeviceMemory, HexagonalPackingIsTheSameOrSaysWhyNot) {
 TEST_F(DeviceMemory, HexagonalPackingTakesStripsWhereTheIndexDoesNotFit) {
   if (bytes_ < kLeastForHexagonal) return;  // refused, as the test before shows
   const kernels::HexagonalInput input = test::hexagonal_input(torus_, 0.5);
-  const kernels::HexagonalResult whole = kernels::pack_hexagonal(kernels::TbbExecutor{}, input);
-  const kernels::HexagonalResult result = kernels::pack_hexagonal_on_cuda(0, input);
+  const kernels::HexagonalResult whole = kernels::HexagonalPacking::pack(kernels::TbbExecutor{}, input);
+  const kernels::HexagonalResult result = kernels::pack_on_cuda<kernels::HexagonalPacking>(0, input);
   test::expect_same_spheres(result.spheres, whole.spheres);
   EXPECT_EQ(result.state_counts, whole.state_counts);
   EXPECT_EQ(result.strips > 1, bytes_ < whole.index_bytes + torus_.triangles.size() * sizeof(kernels::Facet))
@@ -93,7 +110,7 @@ TEST_F(DeviceMemory, HexagonalPackingTakesStripsWhereTheIndexDoesNotFit) {
 TEST_F(DeviceMemory, AdaptivePackingIsTheSameOrSaysWhyNot) {
   Monitor monitor;
   const PackingLimits limits{0.1, 0.05, 0.3, 0.8};
-  const AdaptiveOptions options{.max_count = 120};
+  const PackingStop options{.max_count = 120};
   const Packing expected = pack_adaptive(torus_, limits, options, monitor, {.kind = Kind::cpu});
   ASSERT_EQ(expected.spheres.size(), 120U);
   expect_same_or_refused(bytes_, kLeastForAdaptive, expected, [&] {
@@ -107,8 +124,8 @@ TEST_F(DeviceMemory, AdaptivePackingWorksInPieces) {
   kernels::AdaptiveInput input = test::adaptive_input(torus_);
   input.parameters.min_radius = 0.3;
   input.parameters.max_count = 100;
-  const kernels::AdaptiveResult whole = kernels::pack_adaptive(kernels::TbbExecutor{}, input);
-  const kernels::AdaptiveResult result = kernels::pack_adaptive_on_cuda(0, input);
+  const kernels::AdaptiveResult whole = kernels::AdaptivePacking<>::pack(kernels::TbbExecutor{}, input);
+  const kernels::AdaptiveResult result = kernels::pack_on_cuda<kernels::AdaptivePacking<>>(0, input);
   EXPECT_LT(result.most_at_a_time, 4000U);
   EXPECT_GT(result.search_count, result.most_at_a_time);
   ASSERT_EQ(result.balls.size(), whole.balls.size());
@@ -118,12 +135,9 @@ TEST_F(DeviceMemory, AdaptivePackingWorksInPieces) {
 
 TEST_F(DeviceMemory, AutomaticChoiceFallsBackToTheCpuAndSaysSo) {
   NoticeBoard board;
-  DeviceUse use;
-  const auto on_cpu = [](Kind) { return std::string("cpu"); };
-  const auto on_cuda = [&](int) -> std::string {
-    throw kernels::CudaError(kernels::CudaError::Kind::out_of_memory, "no room", "buy some");
-  };
-  EXPECT_EQ(run_on_device({.kind = Kind::automatic}, kMuchWork, board, use, on_cpu, on_cuda), "cpu");
+  const auto [result, use] =
+      run_on_device<PackerThatFailsOnCuda>({.kind = Kind::automatic}, kMuchWork, board, {});
+  EXPECT_EQ(result, "cpu");
   EXPECT_NE(board.text().find("no room"), std::string::npos) << board.text();
   EXPECT_EQ(use.name, "cpu");
   EXPECT_NE(use.reason.find("no room"), std::string::npos) << use.reason;

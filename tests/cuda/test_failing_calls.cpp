@@ -5,9 +5,7 @@
 #include <map>
 #include <string>
 
-#include "kernels/adaptive_cuda.h"
 #include "kernels/cuda_device.h"
-#include "kernels/hexagonal_cuda.h"
 #include "tests/cuda/cuda_test.h"
 #include "tests/support/adaptive_input.h"
 #include "tests/support/hexagonal_input.h"
@@ -196,14 +194,14 @@ class FailingCalls : public test::CudaTest {
 TEST_F(FailingCalls, OfHexagonalPacking) {
   const Mesh box = test::make_box({0, 0, 0}, {4, 4, 4});
   const HexagonalInput input = test::hexagonal_input(box, 0.9);
-  expect_no_call_is_missed([&] { ASSERT_GT(pack_hexagonal_on_cuda(0, input).spheres.size(), 5U); });
+  expect_no_call_is_missed([&] { ASSERT_GT(pack_on_cuda<HexagonalPacking>(0, input).spheres.size(), 5U); });
 }
 
 TEST_F(FailingCalls, OfAdaptivePacking) {
   const Mesh box = test::make_box({0, 0, 0}, {4, 4, 4});
   AdaptiveInput input = test::adaptive_input(box);
   input.parameters.min_radius = 0.4;
-  expect_no_call_is_missed([&] { ASSERT_GT(pack_adaptive_on_cuda(0, input).balls.size(), 5U); });
+  expect_no_call_is_missed([&] { ASSERT_GT(pack_on_cuda<AdaptivePacking<>>(0, input).balls.size(), 5U); });
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include "core/error.h"
 #include "files/load.h"
 #include "kernels/exec_cpu.h"
-#include "kernels/hexagonal_cuda.h"
 #include "packing/hexagonal.h"
 #include "tests/cuda/cuda_test.h"
 #include "tests/cuda/same_bits.h"
@@ -47,9 +46,9 @@ TEST_F(HexagonalCuda, PacksOverlappingPartsAsTheCpuDoes) {
 TEST_F(HexagonalCuda, PacksInSlabsAsTheCpuDoesAtOnce) {
   const Mesh torus = test::make_torus(5, 2, 48, 24);
   kernels::HexagonalInput input = test::hexagonal_input(torus, 0.6);
-  const kernels::HexagonalResult cpu = kernels::pack_hexagonal(kernels::SerialExecutor{}, input);
+  const kernels::HexagonalResult cpu = kernels::HexagonalPacking::pack(kernels::SerialExecutor{}, input);
   input.most_slots = 777;
-  const kernels::HexagonalResult cuda = kernels::pack_hexagonal_on_cuda(0, input);
+  const kernels::HexagonalResult cuda = kernels::pack_on_cuda<kernels::HexagonalPacking>(0, input);
   EXPECT_EQ(cuda.slots_at_a_time, 777U);
   test::expect_same_spheres(cuda.spheres, cpu.spheres);
   EXPECT_EQ(cuda.state_counts, cpu.state_counts);
@@ -92,7 +91,7 @@ TEST_F(HexagonalCuda, StopsWhenItsCallerDoes) {
   input.progress = [](double share) {
     if (share > 0.2) throw InterruptedError();
   };
-  EXPECT_THROW(kernels::pack_hexagonal_on_cuda(0, input), InterruptedError);
+  EXPECT_THROW(kernels::pack_on_cuda<kernels::HexagonalPacking>(0, input), InterruptedError);
 }
 
 TEST_F(HexagonalCuda, RefusesADeviceThatIsNotThere) {

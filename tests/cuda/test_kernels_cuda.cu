@@ -6,7 +6,7 @@
 #include "kernels/exec_cpu.h"
 #include "kernels/exec_cuda.h"
 #include "kernels/facet_grid.h"
-#include "kernels/hexagonal.h"
+#include "kernels/hexagonal_packing.h"
 #include "kernels/nearest_point.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/winding.h"

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Packing pack(const Mesh& mesh, const PackingLimits& limits, const AdaptiveOptions& options = {},
+Packing pack(const Mesh& mesh, const PackingLimits& limits, const PackingStop& options = {},
              DeviceRequest::Kind kind = DeviceRequest::Kind::cpu) {
   Monitor monitor;
   return pack_adaptive(mesh, limits, options, monitor, {kind, 0});
@@ -199,11 +199,11 @@ TEST(Adaptive, IsTheSameInPiecesOfAnySize) {
   input.parameters.max_radius = 0.6;
   input.parameters.min_radius = 0.25;
   input.parameters.gap = 0.05;
-  const kernels::AdaptiveResult whole = kernels::pack_adaptive(kernels::TbbExecutor{}, input);
+  const kernels::AdaptiveResult whole = kernels::AdaptivePacking<>::pack(kernels::TbbExecutor{}, input);
   ASSERT_GT(whole.lattice_count, 50U);
   ASSERT_GT(whole.balls.size(), whole.lattice_count + 200);
   input.most_at_a_time = 1;
-  const kernels::AdaptiveResult pieces = kernels::pack_adaptive(kernels::TbbExecutor{}, input);
+  const kernels::AdaptiveResult pieces = kernels::AdaptivePacking<>::pack(kernels::TbbExecutor{}, input);
   EXPECT_LT(pieces.most_at_a_time, 1000U);
   EXPECT_EQ(pieces.search_count, whole.search_count);
   ASSERT_EQ(pieces.balls.size(), whole.balls.size());

@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "kernels/cuda_device.h"
-#include "packing/device.h"
+#include "packing/device_choice.h"
 #include "packing/hexagonal.h"
 #include "packing/run_on_device.h"
 #include "tests/support/shapes.h"

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "kernels/exec_cpu.h"
-#include "kernels/hexagonal.h"
+#include "kernels/hexagonal_packing.h"
 #include "kernels/hexagonal_strips.h"
 #include "packing/hexagonal.h"
 #include "tests/support/clearance.h"
@@ -192,12 +192,12 @@ TEST(Hexagonal, IsTheSameOnOneThreadAndOnAll) {
 TEST(Hexagonal, IsTheSameInSlabsOfAnySize) {
   const Mesh torus = test::make_torus(5, 2, 48, 24);
   const kernels::HexagonalInput whole = test::hexagonal_input(torus, 0.6);
-  const kernels::HexagonalResult expected = kernels::pack_hexagonal(kernels::SerialExecutor{}, whole);
+  const kernels::HexagonalResult expected = kernels::HexagonalPacking::pack(kernels::SerialExecutor{}, whole);
   ASSERT_GT(expected.spheres.size(), 1000U);
   for (const std::size_t most_slots : {std::size_t{1}, std::size_t{500}, std::size_t{777}}) {
     kernels::HexagonalInput slabs = whole;
     slabs.most_slots = most_slots;
-    const kernels::HexagonalResult result = kernels::pack_hexagonal(kernels::SerialExecutor{}, slabs);
+    const kernels::HexagonalResult result = kernels::HexagonalPacking::pack(kernels::SerialExecutor{}, slabs);
     EXPECT_LE(result.slots_at_a_time, std::max<std::size_t>(most_slots, kernels::kReplacements));
     expect_same_spheres(result.spheres, expected.spheres, 0.0);
     EXPECT_EQ(result.state_counts, expected.state_counts);
@@ -209,7 +209,7 @@ TEST(Hexagonal, IsTheSameInStripsOfTheModel) {
   Mesh tilted = test::make_torus(5, 2, 48, 24);
   for (Vec3f& p : tilted.positions) p = {p.x, 0.8f * p.y - 0.6f * p.z, 0.6f * p.y + 0.8f * p.z};
   const kernels::HexagonalInput input = test::hexagonal_input(tilted, 0.5);
-  const kernels::HexagonalResult expected = kernels::pack_hexagonal(kernels::SerialExecutor{}, input);
+  const kernels::HexagonalResult expected = kernels::HexagonalPacking::pack(kernels::SerialExecutor{}, input);
   ASSERT_GT(expected.spheres.size(), 1000U);
   const std::uint32_t rows = kernels::make_hexagonal_lattice(input.box, 0.5).count_y;
   for (const std::uint32_t strips : {2U, 3U, rows}) {
@@ -227,9 +227,9 @@ TEST(Hexagonal, EstimateCoversWhatIsKeptAndRefusesTheAbsurd) {
   Monitor monitor;
   const PackingLimits limits{0, 0, 0, 0.2};
   const Packing packing = pack_hexagonal(box, limits, monitor);
-  EXPECT_GE(estimate_hexagonal_bytes(box, limits),
+  EXPECT_GE(hexagonal_method().memory(box, limits, {}).bytes,
             static_cast<double>(packing.spheres.size() * sizeof(Sphere) + packing.statistics.index_bytes));
-  EXPECT_GT(estimate_hexagonal_bytes(box, {0, 0, 0, 1e-4}), 1e15);
+  EXPECT_GT(hexagonal_method().memory(box, {0, 0, 0, 1e-4}, {}).bytes, 1e15);
   EXPECT_THROW(pack_hexagonal(box, {0, 0, 0, 1e-4}, monitor), FailureError);
 }
 

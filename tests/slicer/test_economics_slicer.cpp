@@ -14,7 +14,7 @@
 #include "tests/support/temporary_folder.h"
 
 // Whether the filament that a report predicts is what a slicer then uses. A small part of what
-// bench/economics_table does for docs/economics.md.
+// bench/bench_economics does for docs/economics.md.
 namespace aerate::test {
 namespace {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/mesh.h"
-#include "kernels/hexagonal.h"
+#include "kernels/hexagonal_strips.h"
 
 namespace aerate::test {
 

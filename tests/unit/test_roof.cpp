@@ -88,7 +88,6 @@ TEST(Roof, NoneLeavesBalls) {
   EXPECT_EQ(none.top(50), 50);
   EXPECT_EQ(none.spine(50), 0);
   EXPECT_NEAR(void_volume(none, 2), 4.0 / 3.0 * std::numbers::pi * 8, 1e-12);
-  EXPECT_EQ(void_extent(none, 3, {0, 0, 1}), 3);
 }
 
 TEST(Roof, RefusesWhatIsNoRoof) {
@@ -132,16 +131,12 @@ Vec3d surface_point(const Roof& roof, double radius, Random& random) {
   return (x * std::cos(turn) + y * std::sin(turn)) * aside + roof.up * z;
 }
 
-TEST(Roof, ExtentAndRadiusFitTheSurface) {
+TEST(Roof, RadiusFitsTheSurface) {
   Random random;
   for (const Roof& roof : roofs()) {
     for (const double radius : {3.0, 6.0, 12.0}) {
-      Vec3d direction = random.in_cube(1);
-      direction = direction * (1 / length(direction));
-      double extent = -radius;
       for (int i = 0; i < 4000; ++i) {
         const Vec3d p = surface_point(roof, radius, random);
-        extent = std::max(extent, dot(p, direction));
         if (roof.shapes(radius)) {
           ASSERT_NEAR(lateral_radius(roof, {1, 2, 3}, p + Vec3d{1, 2, 3}), radius, 1e-9);
           // The room that is kept holds the shape.
@@ -150,8 +145,6 @@ TEST(Roof, ExtentAndRadiusFitTheSurface) {
                     1e-9);
         }
       }
-      EXPECT_LE(extent, void_extent(roof, radius, direction) + 1e-9);
-      EXPECT_GE(extent, void_extent(roof, radius, direction) - 0.05 * radius);
     }
   }
 }

@@ -73,12 +73,12 @@ TEST(TriangleBvh, FindsOnlyWhatIsCloserThanTheLimit) {
     const double exact = brute_force_distance_squared(mesh, p);
     const NearestFacet within = bvh.view().nearest(p, exact * 1.0001 + 1e-300);
     EXPECT_EQ(within.distance_squared, exact);
-    ASSERT_NE(within.facet, kNoFacet);
+    ASSERT_NE(within.facet, kNone);
     const Triangle t = mesh.triangles[bvh.view().order[within.facet]];
     EXPECT_EQ(
         distance_squared_to_facet(p, {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]}),
         exact);
-    EXPECT_EQ(bvh.view().nearest(p, exact).facet, kNoFacet);
+    EXPECT_EQ(bvh.view().nearest(p, exact).facet, kNone);
   }
 }
 

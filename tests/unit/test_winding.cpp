@@ -13,23 +13,26 @@ namespace {
 
 using kernels::HostWinding;
 
+std::vector<int> winding_numbers(const Mesh& mesh, const std::vector<Vec3d>& points) {
+  const HostWinding winding(mesh.positions, mesh.triangles);
+  std::vector<int> numbers;
+  for (const Vec3d& p : points) numbers.push_back(winding.view().winding_number(p));
+  return numbers;
+}
+
 TEST(Winding, OfTwoOverlappingBoxesCountsThem) {
   const Mesh mesh = test::join(test::make_box({0, 0, 0}, {2, 2, 2}), test::make_box({1, 1, 1}, {3, 3, 3}));
-  const HostWinding winding(mesh.positions, mesh.triangles);
-  EXPECT_EQ(winding.winding_numbers(std::vector<Vec3d>{
-                {0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}, {2.5, 2.5, 2.5}, {2.5, 0.5, 0.5}, {-1, 0, 0}}),
-            (std::vector<int>{1, 2, 1, 0, 0}));
+  EXPECT_EQ(
+      winding_numbers(mesh, {{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}, {2.5, 2.5, 2.5}, {2.5, 0.5, 0.5}, {-1, 0, 0}}),
+      (std::vector<int>{1, 2, 1, 0, 0}));
 }
 
 TEST(Winding, OfACavityIsZeroAndOfAnInsideOutBoxMinusOne) {
   const Mesh cavity = test::join(test::make_box({0, 0, 0}, {4, 4, 4}),
                                  test::turned_inside_out(test::make_box({1, 1, 1}, {3, 3, 3})));
-  EXPECT_EQ(HostWinding(cavity.positions, cavity.triangles)
-                .winding_numbers(std::vector<Vec3d>{{2, 2, 2}, {0.5, 2, 2}, {2, 2, 3.5}}),
-            (std::vector<int>{0, 1, 1}));
+  EXPECT_EQ(winding_numbers(cavity, {{2, 2, 2}, {0.5, 2, 2}, {2, 2, 3.5}}), (std::vector<int>{0, 1, 1}));
   const Mesh turned = test::turned_inside_out(test::make_box({0, 0, 0}, {4, 4, 4}));
-  EXPECT_EQ(HostWinding(turned.positions, turned.triangles).winding_numbers(std::vector<Vec3d>{{2, 2, 2}}),
-            std::vector<int>{-1});
+  EXPECT_EQ(winding_numbers(turned, {{2, 2, 2}}), std::vector<int>{-1});
 }
 
 // Rays through vertices and edges: an octahedron whose vertices and edges lie on the queried rays.

@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "kernels/atomic.h"
 #include "kernels/facet_grid.h"
 #include "kernels/hexagonal_lattice.h"
+#include "kernels/packer.h"
 #include "kernels/sphere.h"
 #include "kernels/spheres_61.h"
 #include "kernels/tally.h"
@@ -170,17 +172,11 @@ struct Emit {
 // of progress.
 inline constexpr std::size_t kMostSlots = std::size_t{1} << 20;
 
-// A job, in host memory.
-struct HexagonalInput {
-  std::span<const Vec3f> positions;
-  std::span<const std::array<std::uint32_t, 3>> triangles;
-  Box3d box{};    // of the positions
-  CellGrid grid;  // for the facets
-  HexagonalParameters parameters;
+struct HexagonalInput : PackerInput {
+  CellGrid grid{};  // for the facets
+  HexagonalParameters parameters{};
   // At a time; fewer if memory asks for it. The result does not depend on it.
   std::size_t most_slots = kMostSlots;
-  // Called between pieces of work with the share that is done; what it throws ends the job.
-  std::function<void(double)> progress = [](double) {};
 };
 
 struct HexagonalResult {
@@ -190,7 +186,7 @@ struct HexagonalResult {
   std::array<std::uint64_t, kCandidateStates> state_counts{};
   std::size_t index_bytes = 0, index_references = 0, index_cells = 0;  // of the largest strip
   std::size_t slots_at_a_time = 0;
-  std::uint32_t strips = 1;  // of the model, each with an index of its own
+  std::uint32_t strips = 0;  // of the model, each with an index of its own
 };
 
 // Memory that one place needs at most while it is worked on: its state, its sphere, and its entry in the list
@@ -206,15 +202,10 @@ struct HexagonalPiece {
 // What packers of parts of the lattice have found so far.
 struct HexagonalPieces {
   std::array<std::vector<HexagonalPiece>, 4> by_kind;  // by SphereKind
-  std::array<std::uint64_t, kCandidateStates> state_counts{};
-  std::size_t index_bytes = 0, index_references = 0, index_cells = 0;
-  std::size_t slots_at_a_time = 0;
-  std::uint32_t strips = 0;
+  HexagonalResult result;                              // all but the spheres
 
   // In lattice order, in whatever order the parts were packed. Leaves nothing here.
   HexagonalResult joined() {
-    HexagonalResult result{{},          state_counts,    index_bytes, index_references,
-                           index_cells, slots_at_a_time, strips};
     std::size_t total = 0;
     for (const auto& pieces : by_kind)
       for (const HexagonalPiece& piece : pieces) total += piece.spheres.size();
@@ -229,7 +220,7 @@ struct HexagonalPieces {
       }
       pieces.clear();
     }
-    return result;
+    return std::move(result);
   }
 };
 
@@ -258,7 +249,7 @@ class HexagonalPacker {
         spheres_(executor.template allocate<Sphere>(slab_)),
         met_(executor.template allocate<std::uint32_t>(slab_)),
         state_counters_(executor.template allocate<std::uint64_t>(kCandidateStates)) {
-    pieces.slots_at_a_time = slab_;
+    pieces.result.slots_at_a_time = slab_;
   }
 
   // progress: called with the share of these rows that is done
@@ -279,7 +270,7 @@ class HexagonalPacker {
 
     const std::vector<std::uint64_t> counts =
         executor_.download(View<const std::uint64_t>(state_counters_.view()));
-    for (std::size_t i = 0; i < counts.size(); ++i) pieces_.state_counts[i] += counts[i];
+    for (std::size_t i = 0; i < counts.size(); ++i) pieces_.result.state_counts[i] += counts[i];
   }
 
  private:
@@ -380,22 +371,22 @@ void pack_rows(const Executor& executor, View<const Facet> facets, const Box3d& 
                HexagonalPieces& pieces) {
   const auto winding = build_winding_index(executor, facets, input.box, region);
   const auto grid = build_facet_grid(executor, facets, cells);
-  if (winding.bytes() + grid.bytes() > pieces.index_bytes) {
-    pieces.index_bytes = winding.bytes() + grid.bytes();
-    pieces.index_references = winding.references.size() + grid.references.size();
-    pieces.index_cells = winding.offsets.size() + grid.offsets.size();
+  HexagonalResult& result = pieces.result;
+  if (const std::size_t bytes = winding.cells.bytes() + grid.bytes(); bytes > result.index_bytes) {
+    result.index_bytes = bytes;
+    result.index_references = winding.cells.references.size() + grid.cells.references.size();
+    result.index_cells = winding.cells.offsets.size() + grid.cells.offsets.size();
   }
-  ++pieces.strips;
+  ++result.strips;
   progress(0);
   HexagonalPacker<Executor>(executor, winding.view, grid.view, input, pieces).pack(rows, progress);
 }
 
 }  // namespace hexagonal_detail
 
-// The whole job. The triangles go to the executor's memory once, and each sphere comes back once. Fewer than
-// 2^32 places of a kind (the caller's estimate refuses more).
+// With one index of all triangles. Fewer than 2^32 places of a kind (the caller's estimate refuses more).
 template <typename Executor>
-HexagonalResult pack_hexagonal(const Executor& executor, const HexagonalInput& input) {
+HexagonalResult pack_hexagonal_at_once(const Executor& executor, const HexagonalInput& input) {
   const auto facets = gather_facets(executor, input.positions, input.triangles);
   const HexagonalLattice lattice = make_hexagonal_lattice(input.box, input.parameters.lattice_radius);
   HexagonalPieces pieces;

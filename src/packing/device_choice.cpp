@@ -1,4 +1,4 @@
-#include "packing/device.h"
+#include "packing/device_choice.h"
 
 #include <charconv>
 #include <fmt/format.h>
@@ -105,6 +105,15 @@ DeviceChoice choose_device(const DeviceRequest& request, const WorkEstimate& wor
         "`aerate --version` lists the devices");
   }
   return {request, {name_of(found.devices[index], request.index), "asked for"}};
+}
+
+kernels::PackerInput packer_input(const Mesh& mesh, Monitor& monitor) {
+  const Box3f box = bounding_box(mesh);
+  const auto progress = [&monitor](double share) {
+    monitor.progress(share);
+    monitor.check_interrupted();
+  };
+  return {mesh.positions, mesh.triangles, {to_double(box.lower), to_double(box.upper)}, progress};
 }
 
 FailureError device_failure(const kernels::CudaError& error) {

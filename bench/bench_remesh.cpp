@@ -1,6 +1,6 @@
 // Where a model is far from its remeshed surface, and what lies there.
 //
-//   trace_remesh VOXEL_SIZE MODEL.stl...        VOXEL_SIZE in mm
+// The voxel size is in mm.
 //
 // A place counts as far if it is more than two voxels from the remeshed surface. Rays from it, on the side
 // where the model is not, tell how much of the surroundings is in view, and how wide the space in front of it
@@ -9,11 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fmt/core.h>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -22,19 +19,20 @@
 #include <tuple>
 #include <vector>
 
+#include "bench/benchmark.h"
 #include "bench/surface_samples.h"
 #include "core/mesh.h"
 #include "files/load.h"
+#include "kernels/constants.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/winding.h"
 #include "printing/remesh.h"
 
+namespace aerate::bench {
 namespace {
 
-using namespace aerate;
-
 constexpr double kFarVoxels = 2;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using kernels::kInfinity;
 constexpr double kStep = 0.01;  // mm off the surface, where rays begin
 constexpr int kRays = 128;      // over the whole sphere; half of them are used
 
@@ -173,7 +171,7 @@ void trace(const std::filesystem::path& path, double voxel) {
   const Mesh model = load_model(path).mesh;
   Monitor monitor;
   const Mesh remeshed = ModelLevelSet(model, voxel, kInfinity, monitor).surface();
-  const bench::SurfaceSamples samples = bench::sample_surface(model, 500'000);
+  const SurfaceSamples samples = sample_surface(model, 500'000);
   const std::vector<double> distances =
       kernels::HostTriangleBvh(remeshed.positions, remeshed.triangles).distances(samples.points);
   const Surroundings surroundings(model);
@@ -204,17 +202,16 @@ void trace(const std::filesystem::path& path, double voxel) {
   fmt::print("{} places in all\n", groups.size());
 }
 
+int run(const Arguments& arguments) {
+  const double voxel = arguments.number(0, 0);
+  for (std::size_t i = 1; i < arguments.positional.size(); ++i) trace(arguments.positional[i], voxel);
+  return 0;
+}
+
 }  // namespace
+}  // namespace aerate::bench
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    fmt::print(stderr, "usage: trace_remesh VOXEL_SIZE MODEL.stl...\n");
-    return EXIT_FAILURE;
-  }
-  try {
-    for (int i = 2; i < argc; ++i) trace(argv[i], std::atof(argv[1]));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "trace_remesh: {}\n", error.what());
-    return EXIT_FAILURE;
-  }
+  return aerate::bench::run_benchmark(argc, argv, {"VOXEL_SIZE MODEL.stl...", 2, aerate::bench::kAnyNumber},
+                                      aerate::bench::run);
 }

@@ -1,32 +1,26 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <fmt/format.h>
 #include <numbers>
 #include <random>
 #include <string>
 
+#include "bench/benchmark.h"
 #include "bench/containers.h"
 #include "bench/figures.h"
 #include "core/monitor.h"
-#include "kernels/hexagonal.h"
+#include "kernels/hexagonal_packing.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"
 #include "packing/hexagonal.h"
 #include "packing/verify.h"
 
 // The paper's Tables 2 and 3 beside ours: no wall, no gap, its radii.
-// Usage: paper_table [MODELS] [--table FILE] [--summary FILE]. Exit status 1 if a sphere breaks a limit, or
-// if a model is missing of which figures were to be written.
+// Exit status 1 if a sphere breaks a limit, or if a model is missing of which figures were to be written.
 
 namespace aerate::bench {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Places of all four kinds, as the paper counts its spheres: the bounding box filled, and 61 for each lattice
 // sphere that met the surface.
@@ -60,11 +54,11 @@ double brute_force_seconds(const Mesh& mesh, double radius, std::size_t places) 
       0, static_cast<std::uint32_t>(lattice.cell_count() * kernels::kLatticePerCell - 1));
   const std::size_t sample = std::clamp<std::size_t>(30'000'000 / mesh.triangles.size(), 20, 20'000);
   std::size_t fitting = 0;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   for (std::size_t i = 0; i < sample; ++i) {
     if (fits_by_brute_force(mesh, lattice.lattice_position(slot(random)), radius)) ++fitting;
   }
-  const double seconds = seconds_since(start);
+  const double seconds = watch.seconds();
   if (fitting > sample) throw std::logic_error("more spheres fit than were tested");
   return seconds / static_cast<double>(sample) * static_cast<double>(places);
 }
@@ -91,12 +85,9 @@ Figures add_row(Table& table, const Container& container, const Mesh& mesh) {
   Monitor monitor;
   Packing packing;
   Figures figures;
-  figures.seconds = 1e300;
-  for (int run = 0; run < 3; ++run) {
-    const auto start = std::chrono::steady_clock::now();
+  figures.seconds = least_seconds(3, [&] {
     packing = pack_hexagonal(mesh, limits, monitor, {DeviceRequest::Kind::cpu, 0});
-    figures.seconds = std::min(figures.seconds, seconds_since(start));
-  }
+  });
   packing = verify_packing(mesh, packing);
   figures.corrected = packing.statistics.dropped_by_verification + packing.statistics.shrunk_by_verification;
   std::size_t kinds[4] = {};
@@ -140,8 +131,8 @@ void add(Totals& totals, const Container& container, const Figures& figures) {
       grouped(container.paper_indexed_seconds), container.paper_best_seconds);
 }
 
-int run(const FigureArguments& arguments) {
-  const std::string models = arguments.others.empty() ? "../shared/models" : arguments.others[0];
+int run(const Arguments& arguments) {
+  const std::string models = arguments.text(0, "../shared/models");
   fmt::print(
       "Hexagonal packing of the paper's containers: no wall, no gap, disjoint spheres (the paper's medium\n"
       "spheres overlap). Seconds are the least of three runs with all threads, index included; * "
@@ -167,7 +158,7 @@ int run(const FigureArguments& arguments) {
   fmt::print("\n{}\n", differences);
   if (totals.corrected > 0) fmt::print(stderr, "{} spheres broke a limit\n", totals.corrected);
   if (totals.corrected > 0) return 1;
-  if (totals.missing > 0) return arguments.table_file.empty() && arguments.summary_file.empty() ? 0 : 1;
+  if (totals.missing > 0) return arguments.wants_figures() ? 1 : 0;
   totals.summary += fmt::format(
       "| densities of the paper's ten containers (hexagonal, disjoint spheres) | {:.2f} points from the "
       "paper's on average, {:.2f} at most |\n",
@@ -179,9 +170,7 @@ int run(const FigureArguments& arguments) {
 }  // namespace
 }  // namespace aerate::bench
 
-int main(int argc, char** argv) try {
-  return aerate::bench::run(aerate::bench::parse_figure_arguments(argc, argv, 1));
-} catch (const std::exception& error) {
-  fmt::print(stderr, "paper_table: {}\n", error.what());
-  return 2;
+int main(int argc, char** argv) {
+  return aerate::bench::run_benchmark(argc, argv, {"[MODELS]", 0, 1, aerate::bench::Tables::written},
+                                      aerate::bench::run);
 }
