@@ -11,8 +11,8 @@ namespace {
 
 // Densities: PLA, PETG and ABS as in the "Generic" profiles that come with PrusaSlicer 2.5
 // (PrusaResearch.ini, which also gives 25.4, 27.8 and 27.8 a kilogram); PA12 from HP's fact sheet for 3D High
-// Reusability PA 12 (ASTM D792). Standard photopolymers are sold at about 1.1 as liquids and cure
-// to 1.1..1.2. AlSi10Mg as EOS gives it for parts of its aluminium powder.
+// Reusability PA 12 (ASTM D792). Standard photopolymers are sold at about 1.1 as liquids and cure to
+// 1.1..1.2. AlSi10Mg as EOS gives it for parts of its aluminium powder.
 constexpr Material kMaterials[] = {
     {"PLA", 1.24, 25.0},   {"PETG", 1.27, 28.0}, {"ABS", 1.04, 28.0},
     {"resin", 1.10, 40.0}, {"PA12", 1.01, 60.0}, {"AlSi10Mg", 2.67, 80.0},

@@ -29,10 +29,12 @@ static_assert(std::size(kNames) == kLimitCount);
 
 // The guides that figures are taken from (docs/processes.md):
 //   Hubs: "Design rules for 3D printing", the table of key design considerations of 3D Hubs (now Protolabs
-//   Network) i.materialise: design guide of its standard and gray resins Formlabs: design guide for its SLA
-//   printers; Addema's SLA recommendations give the same overhang Materialise: design guidelines for PA 12
-//   (SLS) Shapeways: guidelines for its nylon (escape holes) Protolabs: "How to Design 4 Common Metal 3D
-//   Printing Features"
+//         Network)
+//   i.materialise: design guide of its standard and gray resins
+//   Formlabs: design guide for its SLA printers; Addema's SLA recommendations give the same overhang
+//   Materialise: design guidelines for PA 12 (SLS)
+//   Shapeways: guidelines for its nylon (escape holes)
+//   Protolabs: "How to Design 4 Common Metal 3D Printing Features"
 constexpr const char* kOwnChoice = "aerate's choice: ";
 
 std::string own(const char* why) {

@@ -30,7 +30,7 @@ struct ExpectedOutput {
 //   - the outer part is closed, without misoriented edges, with no more non-manifold edges than the model;
 //   - each void is a shell of its own as planned (check_voids.h);
 //   - the balls round the voids, with their roofs, keep the wall and the gap, where the winding number of the
-//   outer part is 1;
+//     outer part is 1;
 //   - the ceilings of the voids, where they are limited, are no wider than the bridge and one tolerance;
 //   - the volumes add up.
 // On all threads; the facts are the same for any number of them. Throws FailureError that says which of these
