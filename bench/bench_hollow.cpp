@@ -96,7 +96,9 @@ int run(const Arguments& arguments) {
   options.output = folder.path() / "hollow.stl";
   options.load.scale = scale;
   options.packing.method = &packing_method("hexagonal");
-  options.packing.limits = {.wall = 0.8, .gap = 0.4, .min_radius = 0.62, .max_radius = 1.0};
+  const Limits given{
+      {Limit::wall, {0.8}}, {Limit::gap, {0.4}}, {Limit::min_radius, {0.62}}, {Limit::max_radius, {1.0}}};
+  options.packing.process = limits_under(*find_process("fdm"), given, ProcessCheck::none);
   options.surface = SurfaceMode::keep;
   Monitor monitor;
   const HollowReport report = hollow(options, monitor);
@@ -112,13 +114,13 @@ int run(const Arguments& arguments) {
              report.output.triangle_count, total.seconds, total.peak_bytes / 1e6);
 
   const double naive =
-      naive_pipeline(model, scale, options.packing.limits, voxel, folder.path() / "naive.stl");
+      naive_pipeline(model, scale, options.packing.limits(), voxel, folder.path() / "naive.stl");
   const Mesh mesh = load_model(model, options.load).mesh;
   const Stopwatch watch;
-  const Packing packing = pack_hexagonal(mesh, options.packing.limits, monitor);
+  const Packing packing = pack_hexagonal(mesh, options.packing.limits(), monitor);
   const double indexed = watch.seconds();
   const double brute_force = brute_force_packing(
-      mesh, options.packing.limits,
+      mesh, options.packing.limits(),
       packing.statistics.outside + packing.statistics.near_surface + packing.spheres.size());
   fmt::print("| packing with the index | {:.3f} | |\n\n", indexed);
   fmt::print("naive / whole job: {:.1f}; brute force / index: {:.0f}\n", naive / total.seconds,

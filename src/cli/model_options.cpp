@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/numbers.h"
@@ -88,14 +89,11 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
                   stops + ": stop when voids fill this share of the model's volume, percent")
       ->check(number_between({}, 100, "%"))
       ->type_name("PERCENT");
-  const auto is_device = [](const std::string& text) {
-    return parse_device(text) ? std::string() : fmt::format("'{}' is not auto, cpu, cuda or cuda:N", text);
-  };
   command
       .add_option("--device", device_,
                   "Where spheres are packed: auto (a CUDA device for large jobs, if there is one), cpu, cuda "
                   "or cuda:N; the result is the same")
-      ->check(CLI::Validator(is_device, ""))
+      ->check(parsed_by(parse_device, "is not auto, cpu, cuda or cuda:N"))
       ->type_name("DEVICE")
       ->capture_default_str();
 }
@@ -104,8 +102,7 @@ PackingRequest PackingCommandOptions::request() const {
   PackingRequest request;
   request.process = process_.choice();
   request.method = &packing_method(packing_);
-  if (request.method->on_lattice) keep_to_balls_without_roofs(request.process);
-  request.limits = packing_limits(request.process);
+  if (request.method->on_lattice) request.process = kept_to_balls_without_roofs(std::move(request.process));
   request.device = parse_device(device_).value();
   if (request.method->on_lattice && (max_voids_ || target_density_)) {
     throw UsageError(fmt::format("--max-voids and --target-density are for {}", stoppable_packings()),

@@ -11,9 +11,10 @@ namespace aerate {
 // Spheres as a file, millimetres in the model's own coordinates; each number in the shortest form that reads
 // back to the same fp64.
 //   csv   a line "x,y,z,radius,kind", then one line a sphere
-//   json  {"schema": "aerate.spheres", "schema_version": 1, "unit": "mm", "spheres": [[x, y, z, radius,
-//   kind], ...]} ply   text; one vertex a sphere, properties x, y, z, radius (double) and kind (uchar, the
-//   order of SphereKind)
+//   json  {"schema": "aerate.spheres", "schema_version": 1, "unit": "mm",
+//          "spheres": [[x, y, z, radius, kind], ...]}
+//   ply   text; one vertex a sphere, properties x, y, z, radius (double) and kind (uchar, the order of
+//         SphereKind)
 enum class SphereFormat { csv, json, ply };
 
 // From the file name's ending (any case). Throws UsageError for another one.

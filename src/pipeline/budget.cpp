@@ -36,7 +36,7 @@ void require(double needed, const std::string& what, const std::string& hint) {
 
 void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request) {
   if (!request.spheres.empty()) return;
-  const MemoryNeed need = request.method->memory(mesh, request.limits, request.stop);
+  const MemoryNeed need = request.method->memory(mesh, request.limits(), request.stop);
   require(need.bytes, need.job, need.hint);
 }
 

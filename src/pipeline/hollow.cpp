@@ -24,7 +24,7 @@ PackingRequest request_of(const HollowOptions& options, Monitor& monitor) {
   if (options.modifiers) return options.packing;
   PackingRequest request = without_voids_that_cost(options.packing, options, monitor);
   if (options.drainage) {
-    require_room_for_tubes(*options.drainage, request.limits);
+    require_room_for_tubes(*options.drainage, request.limits());
   } else {
     warn_of_trapped_material(options.packing.process.process, monitor);
   }
@@ -100,7 +100,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   const PreparedModel& model = hollowed.model;
   HollowReport report;
   report.input = model.input;
-  report.limits = hollowed.request.limits;
+  report.limits = hollowed.request.limits();
   report.process = hollowed.request.process;
   report.method = name_of_method(options.packing);
   report.packing_statistics = hollowed.packing.statistics;

@@ -12,6 +12,7 @@
 #include "files/three_mf.h"
 #include "packing/methods.h"
 #include "pipeline/process_choice.h"
+#include "printing/materials.h"
 #include "printing/print_settings.h"
 
 namespace aerate {
@@ -23,23 +24,17 @@ enum class SurfaceMode {
   remesh,     // the model becomes a level set and is meshed anew
 };
 
-// What the figures for mass and cost are computed with.
-struct MaterialFigures {
-  std::string name;
-  double density_g_cm3 = 0;
-  double price_per_kg = 0;  // in the user's own currency
-};
-
 // How a model is to be packed.
 struct PackingRequest {
   const PackingMethod* method = &packing_methods().front();
-  PackingLimits limits = kDefaultLimits;
-  ProcessChoice process;          // what those limits are for, and where they came from
+  ProcessChoice process;          // under whose limits
   std::filesystem::path spheres;  // if not empty, these are taken and nothing is packed
   PackingStop stop;               // for a method that is not on a lattice
   DeviceRequest device;
-  // If given, `limits.min_radius` is the least with which a void saves filament in this print.
+  // If given, the least radius is the least with which a void saves filament in this print.
   std::optional<PrintSettings> pays_in = std::nullopt;
+
+  PackingLimits limits() const { return packing_limits(process); }
 };
 
 // For reports.
@@ -81,7 +76,7 @@ struct HollowOptions {
   // Remeshing closes holes up to this diameter, mm; a tenth of the model's diagonal if not given.
   std::optional<double> max_hole;
 
-  MaterialFigures material;
+  Material material;
 
   // How filament is printed, if that was said; else figures are for solid material.
   std::optional<PrintSettings> print;

@@ -185,7 +185,7 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor) {
   PreparedModel model = load_and_inspect(options.model, options.load, monitor);
   const double voxel_size =
-      options.voxel_size.value_or(default_voxel_size(options.packing.limits, model.inspection.box));
+      options.voxel_size.value_or(default_voxel_size(options.packing.limits(), model.inspection.box));
   return make_usable(std::move(model), {options.surface, options.max_hole, voxel_size}, monitor);
 }
 

@@ -14,8 +14,8 @@ namespace aerate {
 // What voids change about a print of filament, as predicted.
 struct PrintPrediction {
   PrintSettings settings;
-  bool described =
-      false;  // the print was described; else these are usual settings, and its infill is not known
+  // The print was described; else these are usual settings, and its infill is not known.
+  bool described = false;
   double filament_before_mm3 = 0;
   double filament_after_mm3 = 0;
   std::optional<double> break_even_infill;  // these voids save above it (0..1); nothing: never
