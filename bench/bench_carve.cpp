@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "bench/surface_samples.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
 #include "kernels/point_triangle.h"
 #include "kernels/triangle_bvh.h"
 #include "printing/carve.h"
@@ -179,7 +179,7 @@ void print_writing() {
   for (const char* ending : {".stl", ".obj", ".ply"}) {
     const auto path =
         std::filesystem::temp_directory_path() / ("bench_carve-" + std::to_string(::getpid()) + ending);
-    const double time = least_seconds([&] { write_mesh(mesh, path, mesh_format_of(path)); });
+    const double time = least_seconds([&] { write_mesh(mesh, path, format_to_write(path)); });
     fmt::print("{:>8} {:10.1f} {:10.3f}\n", ending,
                static_cast<double>(std::filesystem::file_size(path)) / 1e6, time);
     std::filesystem::remove(path);

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/monitor.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
 #include "kernels/hexagonal.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"

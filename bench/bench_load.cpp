@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "files/file_check.h"
+#include "files/input_file.h"
 #include "files/load.h"
 #include "files/weld.h"
 
@@ -23,7 +23,7 @@ constexpr std::size_t kFacetBytes = 50;
 constexpr std::size_t kNormalBytes = 12;
 
 aerate::Mesh read_directly(const char* path) {
-  const aerate::FileBytes bytes = aerate::read_file(path);
+  const aerate::InputFile bytes = aerate::read_file(path);
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data.get() + kHeaderBytes - sizeof(count), sizeof(count));
   if (bytes.size != kHeaderBytes + count * kFacetBytes) {

@@ -5,6 +5,7 @@
 
 #include "cli/numbers.h"
 #include "core/error.h"
+#include "files/formats.h"
 #include "packing/device.h"
 
 namespace aerate::cli {
@@ -21,7 +22,7 @@ const std::map<std::string, LengthUnit>& units() {
 }  // namespace
 
 ModelOptions::ModelOptions(CLI::App& command) {
-  command.add_option("MODEL", path, "The model: STL, OBJ, PLY, OFF or 3MF")->required()->type_name("");
+  command.add_option("MODEL", path, "The model: " + names_that_are_read())->required()->type_name("");
   add_size_options(command);
 }
 

@@ -1,7 +1,6 @@
-#include "files/import.h"
+#include "files/part_writer.h"
 
 #include <fmt/format.h>
-#include <limits>
 #include <utility>
 
 #include "core/error.h"
@@ -40,7 +39,7 @@ void PartWriter::add_triangle(Vec3f a, Vec3f b, Vec3f c) {
     if (!is_finite(a, b, c)) fail_too_large();
     if (mirrored_) std::swap(b, c);
   }
-  if (welder_.triangle_count() == std::numeric_limits<std::uint32_t>::max() / 3) {
+  if (welder_.triangle_count() == kMostTriangles) {
     throw InputError(fmt::format("{}: more than {} triangles", name_, welder_.triangle_count()));
   }
   welder_.add_triangle(a, b, c);
