@@ -34,7 +34,8 @@ ModelOptions::ModelOptions(CLI::App& command, const std::string& name, const std
 void ModelOptions::add_size_options(CLI::App& command) {
   command
       .add_option("--unit", unit_,
-                  "Unit of the model's coordinates: mm, cm, m or inch; 3MF files name their own (default mm)")
+                  "Unit of the model's coordinates: mm, cm, m or inch; 3MF and glTF files have their own "
+                  "(default mm)")
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
       ->type_name("UNIT");
   command.add_option("--scale", scale_, "Factor for the model's size")

@@ -1,6 +1,7 @@
 #include "files/assimp_import.h"
 
 #include <algorithm>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -12,6 +13,15 @@
 
 namespace aerate {
 namespace {
+
+// A disk without files: materials and textures stay where they are.
+class NoFiles final : public Assimp::IOSystem {
+ public:
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
 
 Affine to_affine(const aiMatrix4x4& m) {
   using Rows = Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>;
@@ -109,8 +119,10 @@ void add_node(const aiScene& scene, const aiNode& node, const Affine& parent, do
 // No vertices are joined by assimp: 5.2 gives an STL facet's normal to its corners, and then takes corners of
 // different facets for different vertices.
 LoadedModel import_with_assimp(const InputFile& file, const char* extension,
-                               std::optional<std::size_t> promised_faces, double factor) {
+                               std::optional<std::size_t> promised_faces, double factor,
+                               const Affine& placement) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new NoFiles);  // which takes it over
   const aiScene* scene = importer.ReadFileFromMemory(file.data.get(), file.size, 0, extension);
   if (scene == nullptr) fail_to_read(file, "cannot be read: {}", importer.GetErrorString());
   const std::size_t faces = count_faces(*scene);
@@ -120,7 +132,7 @@ LoadedModel import_with_assimp(const InputFile& file, const char* extension,
   LoadedModel model{.mesh = {}, .format = {}, .part_count = 0};
   Welder welder(faces);
   if (scene->mRootNode != nullptr)
-    add_node(*scene, *scene->mRootNode, Affine::Identity(), factor, file, welder, model);
+    add_node(*scene, *scene->mRootNode, placement, factor, file, welder, model);
   model.mesh = std::move(welder).finish();
   return model;
 }

@@ -30,14 +30,15 @@ struct MeshFormat {
   // What `write` wrote, and nothing else: see read_back().
   Mesh (*read_back)(WrittenFile& file) = nullptr;
 
-  static const MeshFormat stl, three_mf, obj, ply, off;
+  static const MeshFormat stl, three_mf, obj, ply, off, glb, gltf, three_ds;
 };
 
 // In the order in which they are listed.
-inline constexpr std::array kMeshFormats{&MeshFormat::stl, &MeshFormat::three_mf, &MeshFormat::obj,
-                                         &MeshFormat::ply, &MeshFormat::off};
+inline constexpr std::array kMeshFormats{&MeshFormat::stl,  &MeshFormat::three_mf, &MeshFormat::obj,
+                                         &MeshFormat::ply,  &MeshFormat::off,      &MeshFormat::glb,
+                                         &MeshFormat::gltf, &MeshFormat::three_ds};
 
-// For sentences: "STL, 3MF, OBJ, PLY or OFF", ".stl, .3mf, .obj or .ply".
+// For sentences: "STL, 3MF, ... or 3DS", ".stl, .3mf, .obj or .ply".
 std::string names_that_are_read();
 std::string endings_that_are_written();
 

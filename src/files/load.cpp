@@ -23,10 +23,6 @@ double millimetres_per(LengthUnit unit) {
   return 1;
 }
 
-double millimetres_per_unit(const LoadOptions& options) {
-  return millimetres_per(options.unit.value_or(LengthUnit::millimetre)) * options.scale;
-}
-
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options) {
   if (!std::isfinite(options.scale) || !(options.scale > 0))
     throw UsageError(fmt::format("the scale must be a positive number, not {:g}", options.scale));

@@ -18,18 +18,15 @@ double millimetres_per(LengthUnit unit);
 enum class OtherVolumes { refuse, take_as_bodies };
 
 struct LoadOptions {
-  // For formats that carry no unit (all but 3MF); 3MF files bring their own and refuse a contradicting one.
+  // For formats that carry no unit; 3MF and glTF files have their own and refuse another.
   std::optional<LengthUnit> unit;
   double scale = 1.0;  // on top of the unit; finite and positive
   OtherVolumes other_volumes = OtherVolumes::refuse;
 };
 
-// For a coordinate of 1 in a file that does not say its unit.
-double millimetres_per_unit(const LoadOptions& options);
-
 struct LoadedModel {
   Mesh mesh;  // all parts of the file, vertices welded where their coordinates are equal, in millimetres
-  std::string format;          // "STL", "OBJ", "PLY", "OFF", "3MF"
+  std::string format;          // "STL", "3MF", ...
   std::size_t part_count = 1;  // objects in the file that were joined
 };
 

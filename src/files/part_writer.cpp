@@ -16,6 +16,18 @@ bool is_finite(Vec3f a, Vec3f b, Vec3f c) {
 
 }  // namespace
 
+double millimetres_per_unit(const LoadOptions& options) {
+  return millimetres_per(options.unit.value_or(LengthUnit::millimetre)) * options.scale;
+}
+
+double millimetres_per_unit(const LoadOptions& options, const UnitOfFile& own, const std::string& name) {
+  if (options.unit && millimetres_per(*options.unit) != own.millimetres) {
+    throw UsageError(fmt::format("{}: the file says that its unit is the {}", name, own.name),
+                     "leave out --unit; --scale changes the size");
+  }
+  return own.millimetres * options.scale;
+}
+
 PartWriter::PartWriter(Welder& welder, const Affine& transform, double factor, const std::string& name)
     : welder_(welder),
       transform_(transform),

@@ -3,12 +3,23 @@
 #include <Eigen/Geometry>
 #include <string>
 
+#include "files/load.h"
 #include "files/weld.h"
 
 namespace aerate {
 
 // x -> A x + b, of a file's nodes, components and build items.
 using Affine = Eigen::Transform<double, 3, Eigen::AffineCompact>;
+
+// Millimetres for a coordinate of 1 in a file that does not say its unit.
+double millimetres_per_unit(const LoadOptions& options);
+
+// In a file that does. Throws UsageError if the options have another unit; `name` is the file's.
+struct UnitOfFile {
+  const char* name;
+  double millimetres;
+};
+double millimetres_per_unit(const LoadOptions& options, const UnitOfFile& own, const std::string& name);
 
 // Hands triangles of a part to the welder: transformed in double, converted to millimetres and rounded
 // once; a part that is neither moved nor converted keeps its bits. A mirrored part is turned right side out.

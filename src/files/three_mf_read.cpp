@@ -5,7 +5,6 @@
 
 #include "files/formats.h"
 #include "files/input_file.h"
-#include "files/load.h"
 #include "files/part_writer.h"
 #include "files/three_mf.h"
 #include "files/three_mf_package.h"
@@ -33,11 +32,6 @@ class Handle {
 
  private:
   NMR::PLib3MFBase* object_ = nullptr;
-};
-
-struct UnitOfFile {
-  const char* name;
-  double millimetres;
 };
 
 UnitOfFile unit_of_file(DWORD unit, const InputFile& file) {
@@ -94,15 +88,9 @@ class Reader3mf {
       Handle item, object;
       require(NMR::lib3mf_builditemiterator_getcurrent(items.get(), item.receive()), items);
       require(NMR::lib3mf_builditem_getobjectresource(item.get(), object.receive()), item);
-      BOOL transformed = 0;
-      require(NMR::lib3mf_builditem_hasobjecttransform(item.get(), &transformed), item);
-      Affine transform = Affine::Identity();
-      if (transformed) {
-        NMR::MODELTRANSFORM fields{};
-        require(NMR::lib3mf_builditem_getobjecttransform(item.get(), &fields), item);
-        transform = to_affine(fields);
-      }
-      add_object(object, transform, factor, 0, welder, imported);
+      NMR::MODELTRANSFORM transform{};
+      require(NMR::lib3mf_builditem_getobjecttransform(item.get(), &transform), item);
+      add_object(object, to_affine(transform), factor, 0, welder, imported);
     }
     imported.mesh = std::move(welder).finish();
     return imported;
@@ -128,15 +116,9 @@ class Reader3mf {
       Handle component, child;
       require(NMR::lib3mf_componentsobject_getcomponent(object.get(), i, component.receive()), object);
       require(NMR::lib3mf_component_getobjectresource(component.get(), child.receive()), component);
-      BOOL transformed = 0;
-      require(NMR::lib3mf_component_hastransform(component.get(), &transformed), component);
-      Affine total = transform;
-      if (transformed) {
-        NMR::MODELTRANSFORM fields{};
-        require(NMR::lib3mf_component_gettransform(component.get(), &fields), component);
-        total = transform * to_affine(fields);
-      }
-      add_object(child, total, factor, depth + 1, welder, imported);
+      NMR::MODELTRANSFORM own{};
+      require(NMR::lib3mf_component_gettransform(component.get(), &own), component);
+      add_object(child, transform * to_affine(own), factor, depth + 1, welder, imported);
     }
   }
 
@@ -182,12 +164,7 @@ LoadedModel read_3mf(InputFile& file, const LoadOptions& options) {
   check_3mf(file);
   if (options.other_volumes == OtherVolumes::refuse) require_model_parts_only(file);
   const Reader3mf reader(file);
-  const UnitOfFile own = reader.unit();
-  if (options.unit && millimetres_per(*options.unit) != own.millimetres) {
-    throw UsageError(fmt::format("{}: the file says that its unit is the {}", file.name, own.name),
-                     "leave out --unit for 3MF files; --scale changes the size");
-  }
-  return reader.build(own.millimetres * options.scale);
+  return reader.build(millimetres_per_unit(options, reader.unit(), file.name));
 }
 
 void write_3mf(const Mesh& mesh, OutputFile& file) {

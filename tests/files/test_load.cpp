@@ -580,7 +580,8 @@ TEST_F(Load, UnknownExtension) {
 TEST_F(Load, RandomBytesUnderEveryExtension) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> any_byte(0, 255), text_byte(32, 126);
-  for (const char* name : {"noise.stl", "noise.obj", "noise.ply", "noise.off", "noise.3mf"}) {
+  for (const char* name : {"noise.stl", "noise.obj", "noise.ply", "noise.off", "noise.3mf", "noise.glb",
+                           "noise.gltf", "noise.3ds"}) {
     for (const std::size_t size :
          {std::size_t{1}, std::size_t{20}, std::size_t{84}, std::size_t{1000}, std::size_t{100000}}) {
       std::string bytes(size, '\0'), text(size, '\0');
