@@ -13,8 +13,8 @@
 
 #include "bench/benchmark.h"
 #include "bench/surface_samples.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
 #include "kernels/point_triangle.h"
 #include "kernels/triangle_bvh.h"
 #include "printing/carve.h"
@@ -160,7 +160,7 @@ void print_writing() {
              mesh.triangles.size(), "format", "MB", "seconds");
   for (const char* ending : {".stl", ".obj", ".ply"}) {
     const std::filesystem::path path = folder.path() / (std::string("sheet") + ending);
-    const double time = least_seconds(kRepetitions, [&] { write_mesh(mesh, path, mesh_format_of(path)); });
+    const double time = least_seconds(kRepetitions, [&] { write_mesh(mesh, path, format_to_write(path)); });
     fmt::print("{:>8} {:10.1f} {:10.3f}\n", ending,
                static_cast<double>(std::filesystem::file_size(path)) / 1e6, time);
   }

@@ -5,8 +5,8 @@
 
 #include "bench/benchmark.h"
 #include "core/monitor.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
 #include "kernels/hexagonal_packing.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"

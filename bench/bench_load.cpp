@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/benchmark.h"
-#include "files/file_check.h"
+#include "files/input_file.h"
 #include "files/load.h"
 #include "files/weld.h"
 
@@ -22,7 +22,7 @@ constexpr std::size_t kFacetBytes = 50;
 constexpr std::size_t kNormalBytes = 12;
 
 Mesh read_directly(const std::string& path) {
-  const FileBytes bytes = read_file(path);
+  const InputFile bytes = read_file(path);
   std::uint32_t count = 0;
   std::memcpy(&count, bytes.data.get() + kHeaderBytes - sizeof(count), sizeof(count));
   if (bytes.size != kHeaderBytes + count * kFacetBytes) {

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "files/write.h"
+#include "files/output_file.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/text_file.h"
 

@@ -13,6 +13,7 @@
 #include "cli/run_reported.h"
 #include "cli/void_options.h"
 #include "core/error.h"
+#include "files/formats.h"
 #include "pipeline/hollow.h"
 #include "printing/materials.h"
 
@@ -26,7 +27,7 @@ struct HollowCommand {
         drainage(command, config),
         print(command),
         run_options(command) {
-    command.add_option("-o,--output", output, "The result: .stl, .3mf, .obj or .ply (required)")
+    command.add_option("-o,--output", output, "The result: " + endings_that_are_written() + " (required)")
         ->required()
         ->type_name("FILE");
     command

@@ -9,6 +9,7 @@
 
 #include "cli/numbers.h"
 #include "core/error.h"
+#include "files/formats.h"
 #include "packing/device_choice.h"
 #include "packing/methods.h"
 
@@ -39,7 +40,7 @@ std::string capitalised(std::string text) {
 }  // namespace
 
 ModelOptions::ModelOptions(CLI::App& command) {
-  command.add_option("MODEL", path, "The model: STL, OBJ, PLY, OFF or 3MF")->required()->type_name("");
+  command.add_option("MODEL", path, "The model: " + names_that_are_read())->required()->type_name("");
   add_size_options(command);
 }
 
@@ -51,7 +52,8 @@ ModelOptions::ModelOptions(CLI::App& command, const std::string& name, const std
 void ModelOptions::add_size_options(CLI::App& command) {
   command
       .add_option("--unit", unit_,
-                  "Unit of the model's coordinates: mm, cm, m or inch; 3MF files name their own (default mm)")
+                  "Unit of the model's coordinates: mm, cm, m or inch; 3MF and glTF files have their own "
+                  "(default mm)")
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
       ->type_name("UNIT");
   command.add_option("--scale", scale_, "Factor for the model's size")

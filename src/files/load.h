@@ -18,7 +18,7 @@ double millimetres_per(LengthUnit unit);
 enum class OtherVolumes { refuse, take_as_bodies };
 
 struct LoadOptions {
-  // For formats that carry no unit (all but 3MF); 3MF files bring their own and refuse a contradicting one.
+  // For formats that carry no unit; 3MF and glTF files have their own and refuse another.
   std::optional<LengthUnit> unit;
   double scale = 1.0;  // on top of the unit; finite and positive
   OtherVolumes other_volumes = OtherVolumes::refuse;
@@ -26,19 +26,17 @@ struct LoadOptions {
 
 struct LoadedModel {
   Mesh mesh;  // all parts of the file, vertices welded where their coordinates are equal, in millimetres
-  std::string format;          // "STL", "OBJ", "PLY", "OFF", "3MF"
+  std::string format;          // "STL", "3MF", ...
   std::size_t part_count = 1;  // objects in the file that were joined
-  std::size_t vertices_in_file = 0;
 };
 
-// Reads STL (binary, ASCII), OBJ, PLY, OFF through assimp and 3MF through lib3mf (unit, components and build
-// transforms applied); the file name's ending (any case) says which. Triangle order is that of the file, with
-// degenerate triangles; polygons are triangulated; points and lines are left out. Coordinates are converted
-// to millimetres in double and rounded once; with unit and scale 1 they keep the bits of a binary file.
-// (assimp reads decimal text to within one unit in the last place.) Throws InputError (missing, a directory,
-// empty, truncated, wrong triangle count, NaN or infinite coordinates, unknown or garbled content, no
-// triangles, a slicer's project with modifiers), UsageError for a unit that contradicts the file's or an
-// unusable scale. O(bytes).
+// Reads a model of any of the formats in formats.h; the file name's ending (any case) says which. Triangle
+// order is that of the file, with degenerate triangles; polygons are triangulated; points and lines are left
+// out; components and transforms are applied. Coordinates are converted to millimetres in double and rounded
+// once; with unit and scale 1 they keep the bits of a binary file. (assimp reads decimal text to within one
+// unit in the last place.) Throws InputError (missing, a directory, empty, truncated, wrong triangle count,
+// NaN or infinite coordinates, unknown or garbled content, no triangles, a slicer's project with modifiers),
+// UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace aerate

@@ -8,19 +8,28 @@
 
 namespace aerate {
 
+struct InputFile;
+
 // Spheres as a file, millimetres in the model's own coordinates; each number in the shortest form that reads
 // back to the same fp64.
-//   csv   a line "x,y,z,radius,kind", then one line a sphere
-//   json  {"schema": "aerate.spheres", "schema_version": 1, "unit": "mm",
-//          "spheres": [[x, y, z, radius, kind], ...]}
-//   ply   text; one vertex a sphere, properties x, y, z, radius (double) and kind (uchar, the order of
-//         SphereKind)
-enum class SphereFormat { csv, json, ply };
+struct SphereFormat {
+  const char* ending;
+  std::string (*write)(const std::vector<Sphere>& spheres);
+  std::vector<Sphere> (*read)(const InputFile& file);
+
+  // A line "x,y,z,radius,kind", then one line a sphere.
+  static const SphereFormat csv;
+  // {"schema": "aerate.spheres", "schema_version": 1, "unit": "mm", "spheres": [[x, y, z, radius, kind],
+  // ...]}
+  static const SphereFormat json;
+  // Text; one vertex a sphere, properties x, y, z, radius (double) and kind (uchar, the order of SphereKind).
+  static const SphereFormat ply;
+};
 
 // From the file name's ending (any case). Throws UsageError for another one.
 SphereFormat sphere_format_of(const std::filesystem::path& path);
 
-std::string sphere_table(const Packing& packing, SphereFormat format);
+std::string sphere_table(const Packing& packing, const SphereFormat& format);
 
 // Reads any of the three; `kind` may be missing in a csv or json file (then it is `adaptive`). Throws
 // InputError, naming the line or the number of the sphere, for a missing file, other content, numbers that

@@ -1,13 +1,20 @@
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
-// Reading text formats piece by piece, for the file checks.
+#include "files/input_file.h"
+
+// Reading text formats piece by piece.
 namespace aerate {
+
+// Some programs put it before text.
+inline constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
 
 inline bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r';
@@ -16,6 +23,13 @@ inline bool is_blank(char c) {
 // Locale-free.
 inline char to_lower_ascii(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+// A file name's ending with its dot, in lower case; empty if it has none.
+inline std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), to_lower_ascii);
+  return ending;
 }
 
 // Takes the next run of non-blank characters off the front of `line`; empty at its end.
@@ -29,18 +43,24 @@ inline std::string_view take_token(std::string_view& line) {
   return token;
 }
 
-// The whole of `token` as a decimal integer.
-inline std::optional<std::int64_t> parse_integer(std::string_view token) {
-  std::int64_t value = 0;
+// The whole of `token` as a decimal number, whatever the locale.
+template <typename Number>
+std::optional<Number> parse_number(std::string_view token) {
+  Number value = 0;
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (error != std::errc() || end != token.data() + token.size()) return std::nullopt;
   return value;
 }
 
-// Lines of a text, ended by LF, CR or CR LF, numbered from 1.
+inline std::optional<std::int64_t> parse_integer(std::string_view token) {
+  return parse_number<std::int64_t>(token);
+}
+
+// Lines of a text file, ended by LF, CR or CR LF, numbered from 1.
 class LineReader {
  public:
-  explicit LineReader(std::string_view text) : rest_(text) {}
+  explicit LineReader(const InputFile& file, std::size_t start = 0)
+      : file_(file), rest_(file.text().substr(start)) {}
 
   std::optional<std::string_view> next() {
     if (rest_.empty()) return std::nullopt;
@@ -58,7 +78,14 @@ class LineReader {
 
   std::size_t number() const { return number_; }  // of the line that `next` gave last
 
+  // Throws InputError that names the line.
+  template <typename... Arguments>
+  [[noreturn]] void fail(fmt::format_string<Arguments...> what, Arguments&&... arguments) const {
+    fail_to_read(file_, "line {}: {}", number_, fmt::format(what, std::forward<Arguments>(arguments)...));
+  }
+
  private:
+  const InputFile& file_;
   std::string_view rest_;
   std::size_t number_ = 0;
 };

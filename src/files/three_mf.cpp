@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <fmt/compile.h>
+#include <iterator>
 #include <memory>
 #include <pugixml.hpp>
 #include <span>
@@ -150,23 +152,13 @@ std::string orca_config(const std::vector<ThreeMfPart>& parts) {
 }
 
 void append_vertex(std::string& out, Vec3f position) {
-  out += "<vertex x=\"";
-  append_coordinate(out, position.x);
-  out += "\" y=\"";
-  append_coordinate(out, position.y);
-  out += "\" z=\"";
-  append_coordinate(out, position.z);
-  out += "\"/>\n";
+  fmt::format_to(std::back_inserter(out), FMT_COMPILE("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n"),
+                 Decimal{position.x}, Decimal{position.y}, Decimal{position.z});
 }
 
 void append_triangle(std::string& out, const Triangle& triangle) {
-  out += "<triangle v1=\"";
-  append_index(out, triangle[0]);
-  out += "\" v2=\"";
-  append_index(out, triangle[1]);
-  out += "\" v3=\"";
-  append_index(out, triangle[2]);
-  out += "\"/>\n";
+  fmt::format_to(std::back_inserter(out), FMT_COMPILE("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n"),
+                 triangle[0], triangle[1], triangle[2]);
 }
 
 bool names_a_vertex_twice(const Triangle& t) {

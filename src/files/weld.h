@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -9,11 +10,14 @@
 
 namespace aerate {
 
+// Corners are numbered in 32 bits.
+inline constexpr std::size_t kMostTriangles = std::numeric_limits<std::uint32_t>::max() / 3;
+
 // Joins corners whose coordinates are equal (-0 equals 0; the bits of the first one stay). Vertices are
 // numbered in order of first use. O(1) expected for each corner.
 class Welder {
  public:
-  // Reserves room for this many triangles of a closed mesh; more are welcome, up to 2^32 / 3.
+  // Reserves room for this many triangles of a closed mesh; more are welcome, up to kMostTriangles.
   explicit Welder(std::size_t expected_triangles);
 
   // Finite coordinates only.

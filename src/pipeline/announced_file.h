@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/monitor.h"
-#include "files/write.h"
+#include "files/output_file.h"
 
 namespace aerate {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "files/write.h"
+#include "files/output_file.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"

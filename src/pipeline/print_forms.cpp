@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/error.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
 #include "pipeline/hollow.h"
 
 namespace aerate {

@@ -1,11 +1,11 @@
 #include "pipeline/slice_model.h"
 
 #include <string>
-#include <strings.h>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
+#include "files/formats.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"
@@ -24,11 +24,9 @@ void require_other_than_settings(const SliceModelOptions& options) {
 
 // A slip such as `-o part.stl` would put G-code where a model is looked for.
 void require_no_models_name(const std::filesystem::path& output) {
-  for (const char* ending : {".stl", ".3mf", ".obj", ".ply", ".off"}) {
-    if (::strcasecmp(output.extension().c_str(), ending) == 0)
-      throw UsageError(output.string() + ": a model's name, and what is written is G-code",
-                       "give a name such as " + output.stem().string() + ".gcode");
-  }
+  if (!is_a_models_name(output)) return;
+  throw UsageError(output.string() + ": a model's name, and what is written is G-code",
+                   "give a name such as " + output.stem().string() + ".gcode");
 }
 
 // Hollowing is quick beside slicing, and says sooner that nothing can be removed; then, if the form is left

@@ -4,15 +4,14 @@
 #include <utility>
 
 #include "core/error.h"
-#include "files/read_back.h"
 #include "files/three_mf.h"
 
 namespace aerate {
 
 SolidFormat solid_format_of(const HollowOptions& options) {
-  const SolidFormat format{mesh_format_of(options.output), options.modifiers};
-  if (format.modifiers && format.mesh != MeshFormat::three_mf) {
-    throw UsageError(options.output.string() + ": modifiers need a 3MF file",
+  const SolidFormat format{&format_to_write(options.output), options.modifiers};
+  if (format.modifiers && format.mesh != &MeshFormat::three_mf) {
+    throw UsageError(fmt::format("{}: modifiers need a 3MF file", options.output.string()),
                      "give a name that ends in .3mf, or leave out --as modifiers");
   }
   return format;
@@ -20,7 +19,7 @@ SolidFormat solid_format_of(const HollowOptions& options) {
 
 void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat& format) {
   if (!format.modifiers) {
-    write_mesh(solid.mesh, file, format.mesh);
+    write_mesh(solid.mesh, file, *format.mesh);
     return;
   }
   write_bytes(to_3mf(with_void_shells_turned(solid.mesh, solid),
@@ -30,7 +29,7 @@ void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat&
 
 Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
                      Monitor& monitor) {
-  Mesh mesh = read_back(path, format.mesh, monitor);
+  Mesh mesh = read_back(path, *format.mesh, monitor);
   if (!format.modifiers) return mesh;
   if (mesh.triangles.size() != solid.mesh.triangles.size() ||
       read_3mf_parts(path, format.modifiers->flavor) !=

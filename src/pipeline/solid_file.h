@@ -7,7 +7,7 @@
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "core/solid.h"
-#include "files/write.h"
+#include "files/formats.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/options.h"
 
@@ -15,7 +15,7 @@ namespace aerate {
 
 // How a solid is put into a file: its voids as inward shells or, in a 3MF, as modifiers.
 struct SolidFormat {
-  MeshFormat mesh = MeshFormat::stl;
+  const MeshFormat* mesh = &MeshFormat::stl;
   std::optional<ModifierOptions> modifiers;
 };
 
@@ -25,7 +25,7 @@ SolidFormat solid_format_of(const HollowOptions& options);
 // Throws FailureError with the system's reason.
 void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat& format);
 
-// The mesh that `write_solid` wrote, read from its file (see read_back.h), with voids as inward shells again.
+// The mesh that `write_solid` wrote, read from its file (see formats.h), with voids as inward shells again.
 // Throws what read_back() throws, and FailureError if the parts of the file are not those of the solid.
 Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
                      Monitor& monitor);

@@ -3,8 +3,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "files/read_back.h"
-#include "files/write.h"
+#include "files/formats.h"
 #include "tests/support/caught.h"
 #include "tests/support/files.h"
 #include "tests/support/shapes.h"
@@ -21,7 +20,7 @@ TEST(ReadBack, EveryFormatGivesTheSameBitsAgain) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.stl", "a.obj", "a.ply", "a.3mf"}) {
     const auto path = folder.path() / name;
-    const MeshFormat format = mesh_format_of(path);
+    const MeshFormat& format = format_to_write(path);
     write_mesh(mesh, path, format);
     Monitor silent;
     const Mesh again = read_back(path, format, silent);
@@ -38,13 +37,13 @@ template <typename F>
 void expect_damage_is_seen(const char* name, const F& change, const char* said) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / name;
-  write_mesh(test::make_box({0, 0, 0}, {1, 2, 3}), path, mesh_format_of(path));
+  write_mesh(test::make_box({0, 0, 0}, {1, 2, 3}), path, format_to_write(path));
   std::string bytes = test::read_bytes(path);
   change(bytes);
   folder.write(name, bytes);
   Monitor silent;
   const std::string message =
-      message_of<FailureError>([&] { read_back(path, mesh_format_of(path), silent); });
+      message_of<FailureError>([&] { read_back(path, format_to_write(path), silent); });
   EXPECT_TRUE(contains(message, said)) << name;
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "files/formats.h"
 #include "files/load.h"
 #include "files/three_mf.h"
-#include "files/write.h"
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"

@@ -15,8 +15,9 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
+#include "files/output_file.h"
 #include "tests/support/shapes.h"
 
 namespace aerate {
@@ -173,7 +174,7 @@ TEST_F(WriteTest, TheLoaderReadsBackWhatWasWritten) {
   }
   for (const char* name : {"mesh.stl", "mesh.obj", "mesh.ply"}) {
     const fs::path path = folder_ / name;
-    write_mesh(mesh, path, mesh_format_of(path));
+    write_mesh(mesh, path, format_to_write(path));
     const Mesh read = load_model(path).mesh;
     EXPECT_EQ(read.positions, mesh.positions) << name;
     EXPECT_EQ(read.triangles, mesh.triangles) << name;
@@ -203,27 +204,26 @@ TEST_F(WriteTest, PlyReadsBackToTheSameBytes) {
 
 TEST_F(WriteTest, SameBytesForAnyThreadCount) {
   const Mesh mesh = make_sheet(200);
-  for (const auto& [format, ending] :
-       {std::pair{MeshFormat::stl, ".stl"}, {MeshFormat::obj, ".obj"}, {MeshFormat::ply, ".ply"}}) {
+  for (const MeshFormat* const format : {&MeshFormat::stl, &MeshFormat::obj, &MeshFormat::ply}) {
     std::string first;
     for (const std::size_t threads : {1u, 2u, 8u}) {
       const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-      const fs::path path = folder_ / (std::to_string(threads) + ending);
-      write_mesh(mesh, path, format);
+      const fs::path path = folder_ / (std::to_string(threads) + format->ending);
+      write_mesh(mesh, path, *format);
       const std::string bytes = contents_of(path);
       if (first.empty()) first = bytes;
-      EXPECT_EQ(bytes, first) << ending << " with " << threads << " threads";
+      EXPECT_EQ(bytes, first) << format->name << " with " << threads << " threads";
     }
   }
 }
 
-TEST(MeshFormatOf, LooksAtTheEndingInAnyCase) {
-  EXPECT_EQ(mesh_format_of("a/b.stl"), MeshFormat::stl);
-  EXPECT_EQ(mesh_format_of("b.STL"), MeshFormat::stl);
-  EXPECT_EQ(mesh_format_of("b.v2.Obj"), MeshFormat::obj);
-  EXPECT_EQ(mesh_format_of("b.ply"), MeshFormat::ply);
-  EXPECT_THROW(mesh_format_of("b.step"), UsageError);
-  EXPECT_THROW(mesh_format_of("stl"), UsageError);
+TEST(FormatToWrite, LooksAtTheEndingInAnyCase) {
+  EXPECT_EQ(&format_to_write("a/b.stl"), &MeshFormat::stl);
+  EXPECT_EQ(&format_to_write("b.STL"), &MeshFormat::stl);
+  EXPECT_EQ(&format_to_write("b.v2.Obj"), &MeshFormat::obj);
+  EXPECT_EQ(&format_to_write("b.ply"), &MeshFormat::ply);
+  EXPECT_THROW(format_to_write("b.step"), UsageError);
+  EXPECT_THROW(format_to_write("stl"), UsageError);
 }
 
 TEST_F(WriteTest, CommitReplacesTheTargetAndLeavesNothingElse) {
@@ -293,7 +293,7 @@ TEST_F(WriteTest, TargetsThatAreNoFilesAreRefusedByName) {
 TEST_F(WriteTest, AFullDeviceIsReported) {
   // Writing to it fails as on a full disk, without privileges.
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
-  EXPECT_EQ(reason_of([&] { write_mesh(make_sheet(100), "/dev/full", MeshFormat::stl); }),
+  EXPECT_EQ(reason_of([&] { write_mesh(make_sheet(100), fs::path("/dev/full"), MeshFormat::stl); }),
             "/dev/full: cannot be written: No space left on device");
 }
 
@@ -302,10 +302,10 @@ TEST_F(WriteTest, AFullDiskLeavesNothingBehind) {
     GTEST_SKIP() << "cannot mount a tmpfs: " << std::strerror(errno);
   }
   const fs::path target = folder_ / "model.stl";
-  for (const MeshFormat format : {MeshFormat::stl, MeshFormat::obj, MeshFormat::ply}) {
+  for (const MeshFormat* const format : {&MeshFormat::stl, &MeshFormat::obj, &MeshFormat::ply}) {
     EXPECT_EQ(reason_of([&] {
                 PendingFile file(target);
-                write_mesh(make_sheet(200), file, format);
+                write_mesh(make_sheet(200), file, *format);
                 file.commit();
               }),
               target.string() + ": cannot be written: No space left on device");

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "files/write.h"
+#include "files/formats.h"
 #include "tests/support/files.h"
 #include "tests/support/process.h"
 #include "tests/support/shapes.h"

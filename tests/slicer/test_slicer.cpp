@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "files/write.h"
+#include "files/formats.h"
 #include "tests/support/caught.h"
 #include "tests/support/files.h"
 #include "tests/support/process.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
 #include "printing/slicers/slicer.h"
 #include "tests/slicer/fake_slicer.h"
 #include "tests/slicer/slicing.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "files/formats.h"
 #include "files/load.h"
-#include "files/write.h"
 #include "tests/slicer/slicing.h"
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"

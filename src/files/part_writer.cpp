@@ -1,7 +1,6 @@
-#include "files/import.h"
+#include "files/part_writer.h"
 
 #include <fmt/format.h>
-#include <limits>
 #include <utility>
 
 #include "core/error.h"
@@ -16,6 +15,18 @@ bool is_finite(Vec3f a, Vec3f b, Vec3f c) {
 }
 
 }  // namespace
+
+double millimetres_per_unit(const LoadOptions& options) {
+  return millimetres_per(options.unit.value_or(LengthUnit::millimetre)) * options.scale;
+}
+
+double millimetres_per_unit(const LoadOptions& options, const UnitOfFile& own, const std::string& name) {
+  if (options.unit && millimetres_per(*options.unit) != own.millimetres) {
+    throw UsageError(fmt::format("{}: the file says that its unit is the {}", name, own.name),
+                     "leave out --unit; --scale changes the size");
+  }
+  return own.millimetres * options.scale;
+}
 
 PartWriter::PartWriter(Welder& welder, const Affine& transform, double factor, const std::string& name)
     : welder_(welder),
@@ -40,7 +51,7 @@ void PartWriter::add_triangle(Vec3f a, Vec3f b, Vec3f c) {
     if (!is_finite(a, b, c)) fail_too_large();
     if (mirrored_) std::swap(b, c);
   }
-  if (welder_.triangle_count() == std::numeric_limits<std::uint32_t>::max() / 3) {
+  if (welder_.triangle_count() == kMostTriangles) {
     throw InputError(fmt::format("{}: more than {} triangles", name_, welder_.triangle_count()));
   }
   welder_.add_triangle(a, b, c);

@@ -1,11 +1,8 @@
-#include "files/file_check.h"
+#include "files/input_file.h"
 
 #include <cerrno>
-#include <fmt/format.h>
 #include <fstream>
 #include <system_error>
-
-#include "core/error.h"
 
 namespace aerate {
 
@@ -23,19 +20,18 @@ void check_readable(const std::filesystem::path& path) {
   if (size == 0) throw InputError(fmt::format("{}: the file is empty", name));
 }
 
-FileBytes read_file(const std::filesystem::path& path) {
+InputFile read_file(const std::filesystem::path& path) {
   check_readable(path);
-  const std::string name = path.string();
+  InputFile file;
+  file.name = path.string();
   errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: {}", name, std::generic_category().message(errno)));
-  FileBytes bytes;
-  bytes.size = static_cast<std::size_t>(std::filesystem::file_size(path));
-  bytes.data = std::make_unique_for_overwrite<char[]>(bytes.size);
-  if (!file.read(bytes.data.get(), static_cast<std::streamsize>(bytes.size))) {
-    throw InputError(fmt::format("{}: only {} of {} bytes could be read", name, file.gcount(), bytes.size));
-  }
-  return bytes;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail_to_read(file, "{}", std::generic_category().message(errno));
+  file.size = static_cast<std::size_t>(std::filesystem::file_size(path));
+  file.data = std::make_unique_for_overwrite<char[]>(file.size);
+  if (!stream.read(file.data.get(), static_cast<std::streamsize>(file.size)))
+    fail_to_read(file, "only {} of {} bytes could be read", stream.gcount(), file.size);
+  return file;
 }
 
 }  // namespace aerate

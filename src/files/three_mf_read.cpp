@@ -1,11 +1,14 @@
 #include <Model/COM/NMR_DLLInterfaces.h>
 #include <array>
-#include <fmt/format.h>
 #include <string_view>
 #include <utility>
 
-#include "core/error.h"
-#include "files/import.h"
+#include "files/formats.h"
+#include "files/input_file.h"
+#include "files/part_writer.h"
+#include "files/three_mf.h"
+#include "files/three_mf_package.h"
+#include "files/written_file.h"
 
 namespace aerate {
 namespace {
@@ -31,12 +34,7 @@ class Handle {
   NMR::PLib3MFBase* object_ = nullptr;
 };
 
-struct UnitOfFile {
-  const char* name;
-  double millimetres;
-};
-
-UnitOfFile unit_of_file(DWORD unit, const std::string& name) {
+UnitOfFile unit_of_file(DWORD unit, const InputFile& file) {
   switch (unit) {
     case NMR::MODELUNIT_MICROMETER:
       return {"micron", 0.001};
@@ -51,7 +49,7 @@ UnitOfFile unit_of_file(DWORD unit, const std::string& name) {
     case NMR::MODELUNIT_METER:
       return {"meter", 1000};
     default:
-      throw InputError(fmt::format("{}: unknown unit ({})", name, unit));
+      fail_to_read(file, "unknown unit ({})", unit);
   }
 }
 
@@ -63,23 +61,23 @@ Affine to_affine(const NMR::MODELTRANSFORM& transform) {
 
 class Reader3mf {
  public:
-  Reader3mf(FileBytes& bytes, const std::string& name) : name_(name) {
+  explicit Reader3mf(const InputFile& file) : file_(file) {
     require(NMR::lib3mf_createmodel(model_.receive()), model_);
     Handle reader;
     require(NMR::lib3mf_model_queryreader(model_.get(), "3mf", reader.receive()), model_);
-    require(NMR::lib3mf_reader_readfrombuffer(reader.get(), reinterpret_cast<BYTE*>(bytes.data.get()),
-                                              bytes.size),
-            reader);
+    require(
+        NMR::lib3mf_reader_readfrombuffer(reader.get(), reinterpret_cast<BYTE*>(file.data.get()), file.size),
+        reader);
   }
 
   UnitOfFile unit() const {
     DWORD unit = 0;
     require(NMR::lib3mf_model_getunit(model_.get(), &unit), model_);
-    return unit_of_file(unit, name_);
+    return unit_of_file(unit, file_);
   }
 
-  ImportedModel build(double factor) const {
-    ImportedModel imported;
+  LoadedModel build(double factor) const {
+    LoadedModel imported{.mesh = {}, .format = {}, .part_count = 0};
     Welder welder(0);
     Handle items;
     require(NMR::lib3mf_model_getbuilditems(model_.get(), items.receive()), model_);
@@ -90,15 +88,9 @@ class Reader3mf {
       Handle item, object;
       require(NMR::lib3mf_builditemiterator_getcurrent(items.get(), item.receive()), items);
       require(NMR::lib3mf_builditem_getobjectresource(item.get(), object.receive()), item);
-      BOOL transformed = 0;
-      require(NMR::lib3mf_builditem_hasobjecttransform(item.get(), &transformed), item);
-      Affine transform = Affine::Identity();
-      if (transformed) {
-        NMR::MODELTRANSFORM fields{};
-        require(NMR::lib3mf_builditem_getobjecttransform(item.get(), &fields), item);
-        transform = to_affine(fields);
-      }
-      add_object(object, transform, factor, 0, welder, imported);
+      NMR::MODELTRANSFORM transform{};
+      require(NMR::lib3mf_builditem_getobjecttransform(item.get(), &transform), item);
+      add_object(object, to_affine(transform), factor, 0, welder, imported);
     }
     imported.mesh = std::move(welder).finish();
     return imported;
@@ -106,9 +98,8 @@ class Reader3mf {
 
  private:
   void add_object(const Handle& object, const Affine& transform, double factor, int depth, Welder& welder,
-                  ImportedModel& imported) const {
-    if (depth > kMaxDepth)
-      throw InputError(fmt::format("{}: components nested deeper than {}", name_, kMaxDepth));
+                  LoadedModel& imported) const {
+    if (depth > kMaxDepth) fail_to_read(file_, "components nested deeper than {}", kMaxDepth);
     DWORD type = 0;
     require(NMR::lib3mf_object_gettype(object.get(), &type), object);
     // Supports, surfaces without volume and the like are not the model.
@@ -125,22 +116,15 @@ class Reader3mf {
       Handle component, child;
       require(NMR::lib3mf_componentsobject_getcomponent(object.get(), i, component.receive()), object);
       require(NMR::lib3mf_component_getobjectresource(component.get(), child.receive()), component);
-      BOOL transformed = 0;
-      require(NMR::lib3mf_component_hastransform(component.get(), &transformed), component);
-      Affine total = transform;
-      if (transformed) {
-        NMR::MODELTRANSFORM fields{};
-        require(NMR::lib3mf_component_gettransform(component.get(), &fields), component);
-        total = transform * to_affine(fields);
-      }
-      add_object(child, total, factor, depth + 1, welder, imported);
+      NMR::MODELTRANSFORM own{};
+      require(NMR::lib3mf_component_gettransform(component.get(), &own), component);
+      add_object(child, transform * to_affine(own), factor, depth + 1, welder, imported);
     }
   }
 
   void add_mesh(const Handle& object, const Affine& transform, double factor, Welder& welder,
-                ImportedModel& imported) const {
-    if (++imported.part_count > kMaxParts)
-      throw InputError(fmt::format("{}: more than {} parts", name_, kMaxParts));
+                LoadedModel& imported) const {
+    if (++imported.part_count > kMaxParts) fail_to_read(file_, "more than {} parts", kMaxParts);
     DWORD vertex_count = 0, triangle_count = 0;
     require(NMR::lib3mf_meshobject_getvertexcount(object.get(), &vertex_count), object);
     require(NMR::lib3mf_meshobject_gettrianglecount(object.get(), &triangle_count), object);
@@ -151,11 +135,9 @@ class Reader3mf {
     require(
         NMR::lib3mf_meshobject_gettriangleindices(object.get(), triangles.data(), triangle_count, nullptr),
         object);
-    imported.vertices_in_file += vertex_count;
-    PartWriter part(welder, transform, factor, name_);
+    PartWriter part(welder, transform, factor, file_.name);
     const auto corner = [&](DWORD index) {
-      if (index >= vertex_count)
-        throw InputError(fmt::format("{}: a triangle uses a vertex that is not there", name_));
+      if (index >= vertex_count) fail_to_read(file_, "a triangle uses a vertex that is not there");
       const auto& p = vertices[index].m_fPosition;
       return Vec3f{p[0], p[1], p[2]};
     };
@@ -170,25 +152,31 @@ class Reader3mf {
     DWORD code = 0;
     LPCSTR message = nullptr;
     if (object.get() != nullptr) NMR::lib3mf_getlasterror(object.get(), &code, &message);
-    throw InputError(fmt::format("{}: cannot be read as 3MF: {}", name_,
-                                 message != nullptr && *message != '\0' ? message : "not a 3MF package"));
+    fail_to_read(file_, "cannot be read as 3MF: {}",
+                 message != nullptr && *message != '\0' ? message : "not a 3MF package");
   }
 
-  const std::string& name_;
+  const InputFile& file_;
   Handle model_;
 };
 
+LoadedModel read_3mf(InputFile& file, const LoadOptions& options) {
+  check_3mf(file);
+  if (options.other_volumes == OtherVolumes::refuse) require_model_parts_only(file);
+  const Reader3mf reader(file);
+  return reader.build(millimetres_per_unit(options, reader.unit(), file.name));
+}
+
+void write_3mf(const Mesh& mesh, OutputFile& file) {
+  file.write(to_3mf(mesh));
+}
+
+Mesh read_written_3mf(WrittenFile& file) {
+  return load_model(file.path(), {.unit = {}, .other_volumes = OtherVolumes::take_as_bodies}).mesh;
+}
+
 }  // namespace
 
-ImportedModel import_3mf(FileBytes& bytes, std::optional<LengthUnit> unit, double scale,
-                         const std::string& name) {
-  const Reader3mf reader(bytes, name);
-  const UnitOfFile own = reader.unit();
-  if (unit && millimetres_per(*unit) != own.millimetres) {
-    throw UsageError(fmt::format("{}: the file says that its unit is the {}", name, own.name),
-                     "leave out --unit for 3MF files; --scale changes the size");
-  }
-  return reader.build(own.millimetres * scale);
-}
+constinit const MeshFormat MeshFormat::three_mf{"3MF", ".3mf", read_3mf, write_3mf, read_written_3mf};
 
 }  // namespace aerate

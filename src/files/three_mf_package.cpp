@@ -1,6 +1,7 @@
+#include "files/three_mf_package.h"
+
 #include <array>
 #include <cstdint>
-#include <fmt/format.h>
 #include <memory>
 #include <pugixml.hpp>
 #include <sstream>
@@ -8,13 +9,9 @@
 #include <vector>
 #include <zip.h>
 
-#include "core/error.h"
-#include "files/file_check.h"
-
 namespace aerate {
 namespace {
 
-constexpr const char* kCopyAgain = "export or copy the file again";
 constexpr const char* kRelations = "_rels/.rels";
 
 struct Discard {
@@ -27,10 +24,10 @@ struct Close {
 };
 using ArchivedFile = std::unique_ptr<zip_file_t, Close>;
 
-Archive open_archive(const FileBytes& bytes, const std::string& name) {
+Archive open_archive(const InputFile& file) {
   zip_error_t error;
   zip_error_init(&error);
-  zip_source_t* const source = zip_source_buffer_create(bytes.data.get(), bytes.size, 0, &error);
+  zip_source_t* const source = zip_source_buffer_create(file.data.get(), file.size, 0, &error);
   Archive archive(source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY, &error));
   const std::string reason = archive ? std::string() : zip_error_strerror(&error);
   zip_error_fini(&error);
@@ -39,7 +36,7 @@ Archive open_archive(const FileBytes& bytes, const std::string& name) {
   throw InputError(
       fmt::format("{}: a zip archive, as 3MF files are, but its table of contents at the end cannot "
                   "be read ({}): cut short or damaged",
-                  name, reason),
+                  file.name, reason),
       kCopyAgain);
 }
 
@@ -50,11 +47,12 @@ bool is_needed(std::string_view entry) {
 
 // Calls f(bytes) for each block of an entry.
 template <typename F>
-void read_through(zip_t* archive, std::uint64_t index, std::string_view entry, const std::string& name,
+void read_through(zip_t* archive, std::uint64_t index, std::string_view entry, const InputFile& package,
                   const F& f) {
   const auto fail = [&](const char* reason) {
-    throw InputError(fmt::format("{}: '{}' in the 3MF package cannot be read: {}", name, entry, reason),
-                     kCopyAgain);
+    throw InputError(
+        fmt::format("{}: '{}' in the 3MF package cannot be read: {}", package.name, entry, reason),
+        kCopyAgain);
   };
   const ArchivedFile file(zip_fopen_index(archive, index, 0));
   if (!file) fail(zip_strerror(archive));
@@ -66,12 +64,12 @@ void read_through(zip_t* archive, std::uint64_t index, std::string_view entry, c
 }
 
 // An entry as a document; empty if it is not there, or no XML: the importer says what it needs.
-pugi::xml_document document_in(zip_t* archive, const char* entry, const std::string& name) {
+pugi::xml_document document_in(zip_t* archive, const char* entry, const InputFile& package) {
   pugi::xml_document document;
   const zip_int64_t index = zip_name_locate(archive, entry, 0);
   if (index < 0) return document;
   std::string text;
-  read_through(archive, static_cast<std::uint64_t>(index), entry, name,
+  read_through(archive, static_cast<std::uint64_t>(index), entry, package,
                [&](std::string_view bytes) { text += bytes; });
   document.load_buffer(text.data(), text.size());
   return document;
@@ -83,17 +81,16 @@ std::string text_of(const pugi::xml_document& document) {
   return std::move(stream).str();
 }
 
-// A package with another entry in place of one that it has.
-FileBytes with_entry(const FileBytes& bytes, const char* entry, const std::string& content,
-                     const std::string& name) {
+// Puts another entry in place of one that the package has.
+void replace_entry(InputFile& file, const char* entry, const std::string& content) {
   const auto require = [&](bool done) {
-    if (!done) throw InputError(fmt::format("{}: '{}' in the 3MF package cannot be mended", name, entry));
+    if (!done) fail_to_read(file, "'{}' in the 3MF package cannot be mended", entry);
   };
   struct Free {
     void operator()(zip_source_t* source) const { zip_source_free(source); }
   };
   const std::unique_ptr<zip_source_t, Free> buffer(
-      zip_source_buffer_create(bytes.data.get(), bytes.size, 0, nullptr));
+      zip_source_buffer_create(file.data.get(), file.size, 0, nullptr));
   require(buffer != nullptr);
   zip_source_keep(buffer.get());
   Archive archive(zip_open_from_source(buffer.get(), 0, nullptr));
@@ -109,17 +106,18 @@ FileBytes with_entry(const FileBytes& bytes, const char* entry, const std::strin
   zip_stat_t facts;
   zip_stat_init(&facts);
   require(zip_source_stat(buffer.get(), &facts) == 0 && zip_source_open(buffer.get()) == 0);
-  FileBytes mended{std::make_unique_for_overwrite<char[]>(facts.size), facts.size};
-  const zip_int64_t count = zip_source_read(buffer.get(), mended.data.get(), mended.size);
+  auto mended = std::make_unique_for_overwrite<char[]>(facts.size);
+  const zip_int64_t count = zip_source_read(buffer.get(), mended.get(), facts.size);
   zip_source_close(buffer.get());
-  require(count >= 0 && static_cast<std::size_t>(count) == mended.size);
-  return mended;
+  require(count >= 0 && static_cast<std::size_t>(count) == facts.size);
+  file.data = std::move(mended);
+  file.size = facts.size;
 }
 
 // The package's relations without those to parts that are missing, if there are such: PrusaSlicer's command
 // line names a thumbnail that it does not make, and lib3mf then refuses the whole.
-std::string without_missing_parts(zip_t* archive, const std::string& name) {
-  pugi::xml_document relations = document_in(archive, kRelations, name);
+std::string without_missing_parts(zip_t* archive, const InputFile& package) {
+  pugi::xml_document relations = document_in(archive, kRelations, package);
   std::vector<pugi::xml_node> missing;
   for (const pugi::xml_node relation : relations.child("Relationships").children("Relationship")) {
     std::string_view target = relation.attribute("Target").as_string();
@@ -135,10 +133,10 @@ std::string without_missing_parts(zip_t* archive, const std::string& name) {
 
 }  // namespace
 
-void check_3mf(FileBytes& bytes, const std::string& name) {
-  if (!bytes.text().starts_with("PK"))
-    throw InputError(fmt::format("{}: not a 3MF file, since it does not begin as a zip archive does", name));
-  const Archive archive = open_archive(bytes, name);
+void check_3mf(InputFile& file) {
+  if (!file.text().starts_with("PK"))
+    fail_to_read(file, "not a 3MF file, since it does not begin as a zip archive does");
+  const Archive archive = open_archive(file);
   bool has_model = false;
   const auto count = static_cast<std::uint64_t>(zip_get_num_entries(archive.get(), 0));
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -146,23 +144,24 @@ void check_3mf(FileBytes& bytes, const std::string& name) {
     const std::string_view entry = found == nullptr ? "" : found;
     if (!is_needed(entry)) continue;
     has_model = has_model || entry.ends_with(".model");
-    read_through(archive.get(), i, entry, name, [](std::string_view) {});
+    read_through(archive.get(), i, entry, file, [](std::string_view) {});
   }
   if (!has_model) {
-    throw InputError(fmt::format("{}: not a 3MF file: a zip archive without a model ({} files)", name, count),
-                     "3MF files hold one that ends in .model; unpack other archives first");
+    throw InputError(
+        fmt::format("{}: not a 3MF file: a zip archive without a model ({} files)", file.name, count),
+        "3MF files hold one that ends in .model; unpack other archives first");
   }
-  const std::string relations = without_missing_parts(archive.get(), name);
-  if (!relations.empty()) bytes = with_entry(bytes, kRelations, relations, name);
+  const std::string relations = without_missing_parts(archive.get(), file);
+  if (!relations.empty()) replace_entry(file, kRelations, relations);
 }
 
 // Slicers keep in files of their own which volumes of a project are modifiers, negative or for supports; see
 // three_mf.h.
-void require_model_parts_only(const FileBytes& bytes, const std::string& name) {
-  const Archive archive = open_archive(bytes, name);
+void require_model_parts_only(const InputFile& file) {
+  const Archive archive = open_archive(file);
   const auto refuse = [&](const char* kind, const char* volume) {
     throw InputError(
-        fmt::format("{}: a slicer's project with a volume that is not part of the model ({} '{}')", name,
+        fmt::format("{}: a slicer's project with a volume that is not part of the model ({} '{}')", file.name,
                     kind, volume),
         "take such volumes out, or export the model alone (in PrusaSlicer: File, Export, Export Plate as "
         "STL)");
@@ -170,7 +169,7 @@ void require_model_parts_only(const FileBytes& bytes, const std::string& name) {
   const auto value = [](pugi::xml_node node, const char* key) {
     return node.find_child_by_attribute("metadata", "key", key).attribute("value").as_string();
   };
-  const pugi::xml_document prusa = document_in(archive.get(), "Metadata/Slic3r_PE_model.config", name);
+  const pugi::xml_document prusa = document_in(archive.get(), "Metadata/Slic3r_PE_model.config", file);
   for (const pugi::xml_node object : prusa.child("config").children("object")) {
     for (const pugi::xml_node volume : object.children("volume")) {
       const std::string_view type = value(volume, "volume_type");
@@ -180,7 +179,7 @@ void require_model_parts_only(const FileBytes& bytes, const std::string& name) {
         refuse("modifier", value(volume, "name"));
     }
   }
-  const pugi::xml_document orca = document_in(archive.get(), "Metadata/model_settings.config", name);
+  const pugi::xml_document orca = document_in(archive.get(), "Metadata/model_settings.config", file);
   for (const pugi::xml_node object : orca.child("config").children("object")) {
     for (const pugi::xml_node part : object.children("part")) {
       const std::string_view type = part.attribute("subtype").as_string("normal_part");

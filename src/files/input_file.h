@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+
+namespace aerate {
+
+// A file in memory. Writable: a check may rewrite text into the plainer form that an importer understands.
+struct InputFile {
+  std::string name;  // as the user gave it, for messages
+  std::unique_ptr<char[]> data;
+  std::size_t size = 0;
+
+  std::string_view text() const { return {data.get(), size}; }
+};
+
+// Throws InputError if the file is missing, not a regular file, or empty.
+void check_readable(const std::filesystem::path& path);
+
+// Reads a whole file. Throws InputError as above, or with the system's reason.
+InputFile read_file(const std::filesystem::path& path);
+
+inline constexpr const char* kCopyAgain = "export or copy the file again";
+
+// Throws InputError: the file's name and what is wrong with it.
+template <typename... Arguments>
+[[noreturn]] void fail_to_read(const InputFile& file, fmt::format_string<Arguments...> what,
+                               Arguments&&... arguments) {
+  throw InputError(
+      fmt::format("{}: {}", file.name, fmt::format(what, std::forward<Arguments>(arguments)...)));
+}
+
+}  // namespace aerate

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace aerate {
+
+// A file being written beside its target, under a temporary name in the same folder that ends like the
+// target's. It becomes the target only by `commit`; otherwise the destructor removes it. A target that is a
+// symbolic link is followed. Throws FailureError if it cannot be created, or if the target is a directory or
+// anything else that a file must not replace.
+class PendingFile {
+ public:
+  explicit PendingFile(std::filesystem::path target);
+  ~PendingFile();
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }      // where to write
+  const std::filesystem::path& target() const { return target_; }  // what the user asked for
+  void commit();  // flushes to disk and renames onto the target, atomically
+
+ private:
+  std::filesystem::path target_, path_;
+  bool committed_ = false;
+};
+
+// Where bytes go, and the name that errors use: of a pending file, its target.
+struct Destination {
+  Destination(const std::filesystem::path& file) : path(file), shown(file) {}
+  Destination(const PendingFile& file) : path(file.path()), shown(file.target()) {}
+
+  std::filesystem::path path, shown;
+};
+
+// A file that is emptied and written from its front. Throws FailureError with the system's reason (disk full,
+// ...).
+class OutputFile {
+ public:
+  explicit OutputFile(Destination destination);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(std::string_view bytes);
+  void close();  // network file systems report some write errors only here
+
+ private:
+  Destination destination_;
+  int descriptor_;
+};
+
+// Fills a file with bytes that were made elsewhere. Throws as OutputFile does.
+void write_bytes(std::string_view bytes, const Destination& destination);
+
+// Makes `count` records in blocks on all threads, format(first, last) each, and writes the blocks in order.
+void write_blocks(OutputFile& file, std::size_t count,
+                  const std::function<std::string(std::size_t first, std::size_t last)>& format);
+
+// The same where format(i, out) appends record i to the string `out`.
+template <typename Format>
+void write_records(OutputFile& file, std::size_t count, std::size_t expected_bytes_each,
+                   const Format& format) {
+  write_blocks(file, count, [&](std::size_t first, std::size_t last) {
+    std::string block;
+    block.reserve((last - first) * expected_bytes_each);
+    for (std::size_t i = first; i < last; ++i) format(i, block);
+    return block;
+  });
+}
+
+}  // namespace aerate
