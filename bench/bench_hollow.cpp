@@ -46,7 +46,7 @@ double naive_pipeline(const std::filesystem::path& model, double scale, const Pa
   lap("pack");
   const Solid solid = level_set.subtract(packing, {.tolerance = 0.05}, monitor);
   lap("csgDifference and volumeToMesh");
-  write_mesh(solid.mesh, output, MeshFormat::stl);
+  write_mesh(solid.mesh, output, format_to_write(output));
   lap("write");
   const double seconds = watch.seconds();
   fmt::print("| naive: all, {} triangles, voxels of {} mm, not checked | {:.2f} | |\n",
