@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "files/own_file.h"
 #include "files/text_scan.h"
-#include "files/written_file.h"
 
 namespace aerate {
 namespace {
@@ -75,7 +75,7 @@ void write_mesh(const Mesh& mesh, const Destination& destination, const MeshForm
 }
 
 Mesh read_back(const std::filesystem::path& path, const MeshFormat& format, Monitor& monitor) {
-  WrittenFile file(path, monitor);
+  OwnFile file(path, monitor);
   return format.read_back(file);
 }
 

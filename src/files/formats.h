@@ -13,7 +13,7 @@ namespace aerate {
 struct InputFile;
 struct LoadedModel;
 struct LoadOptions;
-class WrittenFile;
+class OwnFile;
 
 // One row for each mesh file format, defined in the room of that format. Everything else loops over the rows.
 struct MeshFormat {
@@ -28,7 +28,7 @@ struct MeshFormat {
   void (*write)(const Mesh& mesh, OutputFile& file) = nullptr;
 
   // What `write` wrote, and nothing else: see read_back().
-  Mesh (*read_back)(WrittenFile& file) = nullptr;
+  Mesh (*read_back)(OwnFile& file) = nullptr;
 
   static const MeshFormat stl, three_mf, obj, ply, off, glb, gltf, three_ds;
 };

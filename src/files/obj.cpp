@@ -6,8 +6,8 @@
 #include "files/assimp_import.h"
 #include "files/decimal.h"
 #include "files/formats.h"
+#include "files/own_file.h"
 #include "files/text_scan.h"
-#include "files/written_file.h"
 
 namespace aerate {
 namespace {
@@ -101,7 +101,7 @@ bool scan_three(std::string_view text, std::array<Number, 3>& numbers) {
   return text.empty();
 }
 
-Mesh read_written_obj(WrittenFile& file) {
+Mesh read_written_obj(OwnFile& file) {
   std::vector<Vec3f> positions;
   Welder welder(0);
   std::size_t number = 0;

@@ -6,9 +6,9 @@
 
 #include "files/assimp_import.h"
 #include "files/formats.h"
+#include "files/own_file.h"
 #include "files/raw_bytes.h"
 #include "files/text_scan.h"
-#include "files/written_file.h"
 
 namespace aerate {
 namespace {
@@ -264,7 +264,7 @@ void write_ply(const Mesh& mesh, OutputFile& file) {
 }
 
 // The number in a header line "element NAME number".
-std::size_t count_in(const WrittenFile& file, std::string_view line, std::string_view name) {
+std::size_t count_in(const OwnFile& file, std::string_view line, std::string_view name) {
   std::string_view rest = line;
   take_token(rest);
   const bool is_named = take_token(rest) == name;
@@ -274,7 +274,7 @@ std::size_t count_in(const WrittenFile& file, std::string_view line, std::string
   return *count;
 }
 
-Mesh read_written_ply(WrittenFile& file) {
+Mesh read_written_ply(OwnFile& file) {
   std::size_t vertex_count = 0, face_count = 0;
   for (auto line = file.next_line(); line != "end_header"; line = file.next_line()) {
     if (!line) file.fail("its header ends too early");

@@ -5,10 +5,10 @@
 
 #include "files/assimp_import.h"
 #include "files/formats.h"
+#include "files/own_file.h"
 #include "files/part_writer.h"
 #include "files/raw_bytes.h"
 #include "files/text_scan.h"
-#include "files/written_file.h"
 
 namespace aerate {
 namespace {
@@ -189,7 +189,7 @@ void write_stl(const Mesh& mesh, OutputFile& file) {
   });
 }
 
-Mesh read_written_stl(WrittenFile& file) {
+Mesh read_written_stl(OwnFile& file) {
   std::array<char, kPreambleBytes> preamble{};
   file.read(preamble.data(), preamble.size());
   const std::size_t count = promised_facets(preamble.data());

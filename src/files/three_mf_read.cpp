@@ -5,10 +5,10 @@
 
 #include "files/formats.h"
 #include "files/input_file.h"
+#include "files/own_file.h"
 #include "files/part_writer.h"
 #include "files/three_mf.h"
 #include "files/three_mf_package.h"
-#include "files/written_file.h"
 
 namespace aerate {
 namespace {
@@ -171,7 +171,7 @@ void write_3mf(const Mesh& mesh, OutputFile& file) {
   file.write(to_3mf(mesh));
 }
 
-Mesh read_written_3mf(WrittenFile& file) {
+Mesh read_written_3mf(OwnFile& file) {
   return load_model(file.path(), {.unit = {}, .other_volumes = OtherVolumes::take_as_bodies}).mesh;
 }
 

@@ -82,7 +82,7 @@ TEST_F(Scenes, GeometryInAnotherFileIsRefusedByName) {
 TEST_F(Scenes, CutOffFilesAreRefused) {
   for (const char* name : kScenes) {
     const std::string whole = scene(name);
-    for (std::size_t size = 1; size < whole.size(); size += 7) refusal(name, whole.substr(0, size));
+    for (std::size_t size = 1; size < whole.size(); size += 29) refusal(name, whole.substr(0, size));
     refusal(name, whole.substr(0, whole.size() - 1));
   }
 }
@@ -155,7 +155,7 @@ TEST_F(Scenes, AlteredFilesAreReadOrRefused) {
   for (const char* name : kScenes) {
     const std::string whole = scene(name);
     std::mt19937 random(1);
-    for (int i = 0; i < 1500; ++i) {
+    for (int i = 0; i < 300; ++i) {
       std::string bytes = whole;
       for (unsigned change = 0; change <= random() % 3; ++change) {
         const std::size_t at = random() % bytes.size();

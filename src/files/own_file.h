@@ -18,9 +18,9 @@ namespace aerate {
 
 // A file that one of our writers wrote, from its front to its end, a block at a time. What is not as it was
 // written is a FailureError. The monitor may interrupt between blocks.
-class WrittenFile {
+class OwnFile {
  public:
-  WrittenFile(std::filesystem::path path, Monitor& monitor);
+  OwnFile(std::filesystem::path path, Monitor& monitor);
 
   const std::filesystem::path& path() const { return path_; }
 

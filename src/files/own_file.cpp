@@ -1,4 +1,4 @@
-#include "files/written_file.h"
+#include "files/own_file.h"
 
 #include <fmt/format.h>
 #include <utility>
@@ -7,32 +7,32 @@
 
 namespace aerate {
 
-WrittenFile::WrittenFile(std::filesystem::path path, Monitor& monitor)
+OwnFile::OwnFile(std::filesystem::path path, Monitor& monitor)
     : path_(std::move(path)), monitor_(monitor), stream_(path_, std::ios::binary) {
   monitor_.check_interrupted();
 }
 
-void WrittenFile::read(char* bytes, std::size_t count) {
+void OwnFile::read(char* bytes, std::size_t count) {
   if (!stream_.read(bytes, static_cast<std::streamsize>(count))) fail("it ends too early");
 }
 
-std::optional<std::string> WrittenFile::next_line() {
+std::optional<std::string> OwnFile::next_line() {
   if (++lines_ % kRecordsPerBlock == 0) monitor_.check_interrupted();
   std::string line;
   if (!std::getline(stream_, line)) return std::nullopt;
   return line;
 }
 
-void WrittenFile::require_room_for(std::size_t bytes) {
+void OwnFile::require_room_for(std::size_t bytes) {
   const auto size = std::filesystem::file_size(path_);
   if (size - static_cast<std::size_t>(stream_.tellg()) < bytes) fail("it ends too early");
 }
 
-void WrittenFile::require_end() {
+void OwnFile::require_end() {
   if (stream_.peek() != std::ifstream::traits_type::eof()) fail("something follows after its end");
 }
 
-void WrittenFile::fail(std::string_view why) const {
+void OwnFile::fail(std::string_view why) const {
   throw FailureError(fmt::format("{}: the file on disk is not what was written: {}", path_.string(), why));
 }
 
