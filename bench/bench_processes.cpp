@@ -131,7 +131,7 @@ void print_roofs(const std::filesystem::path& model, const std::filesystem::path
   const Limits wide{{Limit::min_radius, {1.5}}, {Limit::max_radius, {10}}};
   const Limits without_rule{{Limit::bridge, {100}}};
   Limits wide_without_rule = wide;
-  wide_without_rule[Limit::bridge] = without_rule[Limit::bridge];
+  wide_without_rule.insert(without_rule.begin(), without_rule.end());
   const Process& fdm = *find_process("fdm");
   const Process& metal = *find_process("metal");
   struct Pair {
