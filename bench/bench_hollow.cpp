@@ -107,7 +107,9 @@ int run(const std::filesystem::path& model, double side, double voxel) {
   options.output = folder / "hollow.stl";
   options.load.scale = scale;
   options.packing.method = PackingMethod::hexagonal;
-  options.packing.limits = {.wall = 0.8, .gap = 0.4, .min_radius = 0.62, .max_radius = 1.0};
+  const Limits given{
+      {Limit::wall, {0.8}}, {Limit::gap, {0.4}}, {Limit::min_radius, {0.62}}, {Limit::max_radius, {1.0}}};
+  options.packing.process = limits_under(*find_process("fdm"), given, ProcessCheck::none);
   options.surface = SurfaceMode::keep;
   Monitor monitor;
   const HollowReport report = hollow(options, monitor);
@@ -122,13 +124,13 @@ int run(const std::filesystem::path& model, double side, double voxel) {
   fmt::print("| all: {} voids, {} triangles, checked | {:.2f} | {:.0f} |\n", report.output.void_count,
              report.output.triangle_count, total.seconds, total.peak_bytes / 1e6);
 
-  const double naive = naive_pipeline(model, scale, options.packing.limits, voxel, folder / "naive.stl");
+  const double naive = naive_pipeline(model, scale, options.packing.limits(), voxel, folder / "naive.stl");
   const Mesh mesh = load_model(model, options.load).mesh;
   const auto start = Clock::now();
-  const Packing packing = pack_hexagonal(mesh, options.packing.limits, monitor);
+  const Packing packing = pack_hexagonal(mesh, options.packing.limits(), monitor);
   const double indexed = seconds_since(start);
   const double brute_force = brute_force_packing(
-      mesh, options.packing.limits,
+      mesh, options.packing.limits(),
       packing.statistics.outside + packing.statistics.near_surface + packing.spheres.size());
   fmt::print("| packing with the index | {:.3f} | |\n\n", indexed);
   fmt::print("naive / whole job: {:.1f}; brute force / index: {:.0f}\n", naive / total.seconds,

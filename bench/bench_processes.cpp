@@ -28,8 +28,8 @@ namespace {
 // Each job is run so often, the kinds in turn; the shortest time counts.
 constexpr int kRuns = 3;
 
-ProcessChoice choice_of(const char* process, const std::vector<GivenLimit>& given = {}) {
-  return limits_under(choose_process(process), given, ProcessCheck::strict);
+ProcessChoice choice_of(const Process& process, const Limits& given = {}) {
+  return limits_under(process, given, ProcessCheck::strict);
 }
 
 HollowOptions options_for(const std::filesystem::path& model, const std::filesystem::path& folder,
@@ -38,16 +38,13 @@ HollowOptions options_for(const std::filesystem::path& model, const std::filesys
   options.model = model;
   options.output = folder / "hollow.stl";
   options.packing.process = choice;
-  options.packing.limits = packing_limits(choice);
   return options;
 }
 
 // As the command asks for it, if the process does.
-std::optional<DrainageRequest> drainage_of(const Process& process) {
-  if (process.drainage != Drainage::needed) return std::nullopt;
-  return DrainageRequest{.channel_radius = process[Limit::channel]->value / 2,
-                         .hole_radius = process[Limit::escape_hole]->value / 2,
-                         .escape_holes = {}};
+std::optional<DrainageRequest> drainage_of(const ProcessChoice& choice) {
+  if (choice.process.drainage != Drainage::needed) return std::nullopt;
+  return drainage_request(with_tubes(choice, {}), {});
 }
 
 // Volume of the model deeper than the wall, mm3: no void can take more. By points of a raster of 0.5 mm.
@@ -89,7 +86,7 @@ struct Jobs {
 
 Jobs run_jobs(HollowOptions options) {
   Jobs jobs;
-  const std::optional<DrainageRequest> drainage = drainage_of(options.packing.process.process);
+  const std::optional<DrainageRequest> drainage = drainage_of(options.packing.process);
   for (int i = 0; i < kRuns; ++i) {
     Monitor monitor;
     options.drainage.reset();
@@ -112,14 +109,14 @@ void print_processes(const std::filesystem::path& model, const std::filesystem::
       "sealed, "
       "% | widest ceiling, mm | drained | escape holes | trapped, % | job, s | sealed, s | ratio |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const char* process : {"fdm", "sla", "sls", "metal"}) {
+  for (const Process& process : processes()) {
     const HollowOptions options = options_for(model, folder, choice_of(process));
     const Jobs jobs = run_jobs(options);
-    const double bound = deeper_than(mesh, options.packing.limits.wall);
+    const double bound = deeper_than(mesh, options.packing.limits().wall);
     const OutputFacts& output = jobs.asked.output;
     const auto& drainage = jobs.asked.drainage;
     fmt::print("| {} | {} | {} | {:.0f} | {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} |\n",
-               process, output.void_count, drainage ? fmt::format("{}", drainage->dropped.count()) : "-",
+               process.name, output.void_count, drainage ? fmt::format("{}", drainage->dropped.count()) : "-",
                output.volume_removed, percent_of_bound(jobs.asked, bound),
                percent_of_bound(jobs.sealed, bound), widest_ceiling(output), drainage ? "yes" : "sealed",
                drainage ? fmt::format("{}", drainage->plan.holes.size()) : "-",
@@ -133,17 +130,19 @@ void print_processes(const std::filesystem::path& model, const std::filesystem::
 
 // The same limits with and without a rule for ceilings, sealed.
 void print_roofs(const std::filesystem::path& model, const std::filesystem::path& folder) {
-  const std::vector<GivenLimit> wide{{Limit::min_radius, 1.5, "here"}, {Limit::max_radius, 10, "here"}};
-  std::vector<GivenLimit> wide_without = wide;
-  const GivenLimit no_rule{Limit::bridge, 100, "here"};
-  wide_without.push_back(no_rule);
+  const Limits wide{{Limit::min_radius, {1.5}}, {Limit::max_radius, {10}}};
+  const Limits without_rule{{Limit::bridge, {100}}};
+  Limits wide_without_rule = wide;
+  wide_without_rule.insert(without_rule.begin(), without_rule.end());
+  const Process& fdm = *find_process("fdm");
+  const Process& metal = *find_process("metal");
   struct Pair {
     const char* name;
     ProcessChoice with, without;
   };
   const std::vector<Pair> pairs{
-      {"fdm, radius 1.5 to 10", choice_of("fdm", wide), choice_of("fdm", wide_without)},
-      {"metal", choice_of("metal"), choice_of("metal", {no_rule})}};
+      {"fdm, radius 1.5 to 10", choice_of(fdm, wide), choice_of(fdm, wide_without_rule)},
+      {"metal", choice_of(metal), choice_of(metal, without_rule)}};
   fmt::print(
       "| limits | voids | with roofs | void volume, mm3 | without roofs, mm3 | ratio | widest ceiling, mm |\n"
       "|---|---|---|---|---|---|---|\n");

@@ -1,22 +1,29 @@
 #pragma once
 
+#include <optional>
 #include <span>
-#include <string_view>
+#include <string>
 
 namespace aerate {
 
-// What a model is printed of. Densities are those of solid printed parts; prices are round figures for one
-// kilogram in the user's currency, to be replaced by what was really paid.
+// What a model is printed of, and what the figures for mass and cost are computed with. Densities are those of
+// solid printed parts; prices are round figures in the user's currency, to be replaced by what was really paid.
 struct Material {
-  std::string_view name;
-  double density;  // g/cm3
-  double price;    // per kg
+  std::string name;
+  double density_g_cm3 = 0;
+  double price_per_kg = 0;
 };
 
 // The built-in materials, PLA first.
 std::span<const Material> materials();
 
-// Looks a material up by name, in any case. Throws UsageError that lists the names there are.
-const Material& find_material(std::string_view name);
+// "PLA, PETG, .."
+std::string material_names();
+
+// A built-in material, by its name in any case, with these figures in place of its own. A name that is none of
+// theirs is taken as it is if both figures are given. Throws UsageError that lists the names there are
+// otherwise.
+Material choose_material(const std::string& name, std::optional<double> density_g_cm3 = {},
+                         std::optional<double> price_per_kg = {});
 
 }  // namespace aerate

@@ -1,17 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "core/packing.h"
-
 namespace aerate {
 
-// The figures that a process sets. Lengths in mm; `overhang` in degrees from the vertical.
+// The figures that a process sets, in the order of their rows.
 enum class Limit {
   wall,         // least thickness between a void and the model's surface
   gap,          // least thickness between two voids
@@ -26,16 +24,46 @@ enum class Limit {
 };
 inline constexpr std::size_t kLimitCount = 10;
 
-// As on the command line and in a process file: "min-radius".
-std::string_view name_of(Limit limit);
-std::optional<Limit> limit_named(std::string_view name);
-std::string_view unit_of(Limit limit);
-
-// A figure, and who says so.
-struct SourcedValue {
-  double value = 0;
-  std::string source;
+// When a job is under a limit.
+enum class LimitGroup {
+  packing,   // always; every process has these
+  printer,   // never: walls and gaps are held against it
+  ceilings,  // where the process or the user gives both of these
+  drainage,  // where voids drain
 };
+
+// No length of a print is beyond this, mm.
+inline constexpr double kLongest = 1e5;
+
+struct LimitUnit {
+  std::string_view name;
+  std::string_view symbol;
+  std::string_view placeholder;  // of a value, on the command line
+};
+
+// All that there is to say of a limit: the command line, process files and reports have it from here.
+struct LimitRow {
+  Limit limit;
+  LimitGroup group;
+  std::string_view name;    // in process files and reports
+  std::string_view option;  // on the command line; empty for what a process alone says
+  LimitUnit unit;
+  std::optional<double> least;   // that may be given; absent: more than 0
+  std::string_view explanation;  // for who gives it
+  double most = kLongest;
+};
+std::span<const LimitRow> limit_rows();
+const LimitRow& row_of(Limit limit);
+
+// The value of a limit, and where it is from.
+struct LimitValue {
+  double value = 0;
+  std::string source = {};  // who says so; empty for the user
+  std::string origin = {};  // in a job: "default of fdm", "command line", "configuration file", ..
+};
+
+// Some of the limits: those of a process, those that the user gave, or those that a job is under.
+using Limits = std::map<Limit, LimitValue>;
 
 // What happens to the material that a printer leaves in a closed void.
 enum class Drainage {
@@ -49,24 +77,13 @@ struct Process {
   std::string title;
   std::string material;  // one of materials()
   Drainage drainage = Drainage::not_needed;
-  std::array<std::optional<SourcedValue>, kLimitCount> limits;
-
-  const std::optional<SourcedValue>& operator[](Limit limit) const {
-    return limits[static_cast<std::size_t>(limit)];
-  }
-  std::optional<SourcedValue>& operator[](Limit limit) { return limits[static_cast<std::size_t>(limit)]; }
+  Limits limits;
 };
 
-// The built-in processes: fdm, sla, sls, metal. Each has wall, gap and radii.
+// The built-in processes, the default first.
 std::span<const Process> processes();
 
 // The built-in process of this name, or nullptr.
 const Process* find_process(std::string_view name);
-
-// What is packed with when nothing else is said: the limits of `fdm`, for a 0.4 mm nozzle.
-//   wall 1.2 mm: three extrusion lines; gap 0.9 mm: two extrusion lines, the least that separates two voids;
-//   min_radius 0.62 mm: 1 mm3, below which slicers drop shells; max_radius 25 mm: what pays at 15 % infill
-//   (docs/economics.md) still fits. Larger voids than the bridge allows get roofs.
-inline constexpr PackingLimits kDefaultLimits{.wall = 1.2, .gap = 0.9, .min_radius = 0.62, .max_radius = 25};
 
 }  // namespace aerate

@@ -33,7 +33,7 @@ HollowOptions FormOptions::hollow(const ModelOptions& model) const {
         fmt::format("process {} prints no filament, and these slicers do nothing else", process.name),
         "make a model with voids that drain by 'aerate hollow', and open it in the slicer of your printer");
   options.tolerance = tolerance_;
-  require_tolerance_for(options.packing.limits, tolerance_);
+  require_tolerance_for(options.packing.limits(), tolerance_);
   return options;
 }
 

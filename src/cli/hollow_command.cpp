@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "cli/drainage_options.h"
 #include "cli/model_options.h"
@@ -13,7 +14,7 @@
 #include "cli/void_options.h"
 #include "core/error.h"
 #include "pipeline/hollow.h"
-#include "pipeline/material_choice.h"
+#include "printing/materials.h"
 
 namespace aerate::cli {
 
@@ -104,7 +105,7 @@ struct HollowCommand::Options {
     // Modifiers leave the model solid: nothing is trapped in them.
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
-    if (!options.modifiers) options.drainage = drainage.request(options.packing.process);
+    if (!options.modifiers) options = drainage.applied_to(std::move(options));
     options.tolerance = tolerance;
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
@@ -113,7 +114,7 @@ struct HollowCommand::Options {
                                        density, price);
     options.print = print.settings(options.packing);
     options.heavier = print.heavier();
-    require_tolerance_for(options.packing.limits, tolerance);
+    require_tolerance_for(options.packing.limits(), tolerance);
     return options;
   }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <map>
+#include <utility>
 
 #include "cli/numbers.h"
 #include "core/error.h"
@@ -67,14 +68,11 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
                   "Adaptive packing: stop when voids fill this share of the model's volume, percent")
       ->check(number_between({}, 100, "%"))
       ->type_name("PERCENT");
-  const auto is_device = [](const std::string& text) {
-    return parse_device(text) ? std::string() : fmt::format("'{}' is not auto, cpu, cuda or cuda:N", text);
-  };
   command
       .add_option("--device", device_,
                   "Where spheres are packed: auto (a CUDA device for large jobs, if there is one), cpu, cuda "
                   "or cuda:N; the result is the same")
-      ->check(CLI::Validator(is_device, ""))
+      ->check(parsed_by(parse_device, "is not auto, cpu, cuda or cuda:N"))
       ->type_name("DEVICE")
       ->capture_default_str();
 }
@@ -82,8 +80,7 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
 PackingRequest PackingCommandOptions::request() const {
   PackingRequest request;
   request.process = process_.choice();
-  if (packing_ == "hexagonal") keep_to_balls_without_roofs(request.process);
-  request.limits = packing_limits(request.process);
+  if (packing_ == "hexagonal") request.process = kept_to_balls_without_roofs(std::move(request.process));
   request.device = parse_device(device_).value();
   if (packing_ == "hexagonal") {
     request.method = PackingMethod::hexagonal;

@@ -31,7 +31,7 @@ struct ModelOptions {
   double scale_ = 1.0;
 };
 
-// --process, --wall, --gap, --min-radius, --max-radius, --packing, --max-voids, --target-density, --device
+// The options of the process and its limits, --packing, --max-voids, --target-density, --device
 struct PackingCommandOptions {
   PackingCommandOptions(CLI::App& command, const ConfigFile& config);
   // Throws UsageError for options that contradict each other.

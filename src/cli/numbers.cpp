@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <utility>
 
 namespace aerate::cli {
 
@@ -24,19 +25,11 @@ std::optional<Vec3d> parse_point(std::string_view text) {
 }
 
 std::optional<Vec3d> parse_direction(std::string_view text) {
-  if (text.size() == 2 && (text[0] == '+' || text[0] == '-')) {
-    const double length = text[0] == '+' ? 1 : -1;
-    switch (text[1]) {
-      case 'x':
-        return Vec3d{length, 0, 0};
-      case 'y':
-        return Vec3d{0, length, 0};
-      case 'z':
-        return Vec3d{0, 0, length};
-      default:
-        return std::nullopt;
-    }
-  }
+  constexpr std::pair<std::string_view, Vec3d> kAxes[] = {{"+x", {1, 0, 0}}, {"-x", {-1, 0, 0}},
+                                                          {"+y", {0, 1, 0}}, {"-y", {0, -1, 0}},
+                                                          {"+z", {0, 0, 1}}, {"-z", {0, 0, -1}}};
+  for (const auto& [name, axis] : kAxes)
+    if (text == name) return axis;
   const auto direction = parse_point(text);
   const double extent = direction ? length(*direction) : 0;
   if (!(extent > 0) || !std::isfinite(extent)) return std::nullopt;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,13 +19,19 @@ std::optional<Vec3d> parse_point(std::string_view text);
 // "+x", "-x", .., "-z" or "x,y,z" as a unit vector; nothing for other texts and for 0,0,0.
 std::optional<Vec3d> parse_direction(std::string_view text);
 
+// Accepts what a function makes something of; `fault` says of other texts what they are not.
+template <typename Parse>
+CLI::Validator parsed_by(Parse parse, const std::string& fault) {
+  const auto check = [parse, fault](const std::string& text) {
+    return parse(text) ? std::string() : fmt::format("'{}' {}", text, fault);
+  };
+  return CLI::Validator(check, "");
+}
+
 // Accepts a number in [least, most], or in (0, most] with `least` absent; `unit` is for the message.
 CLI::Validator number_between(std::optional<double> least, double most, const std::string& unit);
 
 // The same without fractions.
 CLI::Validator whole_number_between(double least, double most, const std::string& unit);
-
-// No length of a print is beyond this, mm.
-inline constexpr double kLongest = 1e5;
 
 }  // namespace aerate::cli

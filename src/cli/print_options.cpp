@@ -40,9 +40,6 @@ void require_lines_that_fit(const PrintSettings& settings, const PackingLimits& 
 }  // namespace
 
 PrintOptions::PrintOptions(CLI::App& command) {
-  const auto is_percent = [](const std::string& text) {
-    return parse_percent(text) ? std::string() : fmt::format("'{}' is not a share from 0% to 100%", text);
-  };
   infill_option_ =
       command
           .add_option(
@@ -50,7 +47,7 @@ PrintOptions::PrintOptions(CLI::App& command) {
               "Infill of the print; with it filament is predicted, voids that would cost more than they save "
               "are left out, and a print that would become heavier is refused. Without it figures are for "
               "solid material")
-          ->check(CLI::Validator(is_percent, ""))
+          ->check(parsed_by(parse_percent, "is not a share from 0% to 100%"))
           ->type_name("PERCENT")
           ->group(kGroup);
   const auto add = [&](const char* name, auto& value, const char* what) {
@@ -92,7 +89,7 @@ std::optional<PrintSettings> PrintOptions::settings(const PackingRequest& packin
   PrintSettings settings = settings_;
   settings.infill = parse_percent(infill_).value();
   settings.pattern = pattern_ == "gyroid" ? InfillPattern::gyroid : InfillPattern::lines;
-  require_lines_that_fit(settings, packing.limits);
+  require_lines_that_fit(settings, packing.limits());
   return settings;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <string>
 
 #include "cli/config_file.h"
+#include "cli/limit_options.h"
 #include "pipeline/process_choice.h"
 
 namespace aerate::cli {
@@ -12,7 +12,7 @@ namespace aerate::cli {
 // Thrown while options are read for `--process list`: the processes are to be listed, and nothing else done.
 class ProcessListRequest : public CLI::Success {};
 
-// --process, --wall, --gap, --min-radius, --max-radius, --overhang, --bridge, --up
+// --process, the limits of packing and of ceilings, --up
 class ProcessOptions {
  public:
   ProcessOptions(CLI::App& command, const ConfigFile& config);
@@ -21,20 +21,12 @@ class ProcessOptions {
   ProcessChoice choice() const;
 
  private:
-  void add_roof_options(CLI::App& command);
-
-  struct Given {
-    Limit limit;
-    double value = 0;
-    CLI::Option* option = nullptr;
-  };
-
   const ConfigFile& config_;
-  std::string process_ = "fdm";
-  CLI::Option* process_option_ = nullptr;
-  std::array<Given, 6> given_;
+  std::string process_ = processes().front().name;
+  const CLI::Option* process_option_;
+  LimitOptions limits_;
   std::string up_ = PrintDirection{}.name;
-  CLI::Option* up_option_ = nullptr;
+  const CLI::Option* up_option_;
 };
 
 }  // namespace aerate::cli

@@ -57,12 +57,12 @@ Json json_of(const PackingLimits& limits) {
 
 Json json_of(const ProcessChoice& choice) {
   Json origins = Json::array();
-  for (const LimitOrigin& limit : choice.origins) {
-    origins.push_back({{"limit", name_of(limit.limit)},
-                       {"value", limit.value},
-                       {"unit", unit_of(limit.limit)},
-                       {"origin", limit.origin},
-                       {"source", limit.source.empty() ? Json(nullptr) : Json(limit.source)}});
+  for (const auto& [limit, chosen] : choice.limits) {
+    origins.push_back({{"limit", row_of(limit).name},
+                       {"value", chosen.value},
+                       {"unit", row_of(limit).unit.name},
+                       {"origin", chosen.origin},
+                       {"source", chosen.source.empty() ? Json(nullptr) : Json(chosen.source)}});
   }
   return {{"name", choice.process.name},
           {"title", choice.process.title},

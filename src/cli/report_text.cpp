@@ -69,19 +69,16 @@ void add_device(Lines& lines, const DeviceUse& device) {
 // Each limit with where it came from; those of the same origin together.
 void add_limits(Lines& lines, const ProcessChoice& choice) {
   lines.add("process", "{}: {}", choice.process.name, choice.process.title);
-  std::vector<std::string> origins;
-  for (const LimitOrigin& limit : choice.origins)
-    if (std::find(origins.begin(), origins.end(), limit.origin) == origins.end())
-      origins.push_back(limit.origin);
-  for (const std::string& origin : origins) {
-    std::string values;
-    for (const LimitOrigin& limit : choice.origins) {
-      if (limit.origin == origin)
-        values += fmt::format("{}{} {:.4g} {}", values.empty() ? "" : ", ", name_of(limit.limit), limit.value,
-                              unit_of(limit.limit));
-    }
-    lines.add("", "{} ({})", values, origin);
+  std::vector<std::pair<std::string, std::string>> values_by_origin;
+  for (const auto& [limit, chosen] : choice.limits) {
+    auto found =
+        std::ranges::find(values_by_origin, chosen.origin, &std::pair<std::string, std::string>::first);
+    if (found == values_by_origin.end()) found = values_by_origin.insert(found, {chosen.origin, ""});
+    auto& values = found->second;
+    values += fmt::format("{}{} {:.4g} {}", values.empty() ? "" : ", ", row_of(limit).name, chosen.value,
+                          row_of(limit).unit.name);
   }
+  for (const auto& [origin, values] : values_by_origin) lines.add("", "{} ({})", values, origin);
 }
 
 void add_ceilings(Lines& lines, const HollowReport& report) {

@@ -4,6 +4,7 @@
 
 #include "cli/numbers.h"
 #include "core/error.h"
+#include "printing/processes.h"
 
 namespace aerate::cli {
 

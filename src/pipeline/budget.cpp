@@ -40,10 +40,11 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
   double needed = 0;
   switch (request.method) {
     case PackingMethod::adaptive:
-      needed = estimate_adaptive_bytes(mesh, request.limits, request.stop);
+      needed = estimate_adaptive_bytes(mesh, request.limits(), request.stop);
       require(
           needed,
-          fmt::format("packing spheres down to radius {:.3g} mm into this model", request.limits.min_radius),
+          fmt::format("packing spheres down to radius {:.3g} mm into this model",
+                      request.limits().min_radius),
           "give a larger --min-radius (the number of spheres grows with the inverse of its cube), or limit "
           "it "
           "with --max-voids");
@@ -51,11 +52,11 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
     case PackingMethod::given:
       return;
     case PackingMethod::hexagonal:
-      needed = estimate_hexagonal_bytes(mesh, request.limits);
+      needed = estimate_hexagonal_bytes(mesh, request.limits());
       break;
   }
   require(needed,
-          fmt::format("packing spheres of radius {:.3g} mm into this model", request.limits.max_radius),
+          fmt::format("packing spheres of radius {:.3g} mm into this model", request.limits().max_radius),
           "give a larger --max-radius: the number of spheres falls with its cube");
 }
 

@@ -111,14 +111,14 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   // Modifiers have no walls to pay for, and leave the model solid.
   const PackingRequest request =
       options.modifiers ? options.packing : without_voids_that_cost(options.packing, options, monitor);
-  report.limits = request.limits;
+  report.limits = request.limits();
   report.process = request.process;
-  if (options.drainage) require_room_for_tubes(*options.drainage, request.limits);
+  if (options.drainage) require_room_for_tubes(*options.drainage, request.limits());
   if (!options.modifiers && !options.drainage)
     warn_of_trapped_material(options.packing.process.process, monitor);
   PreparedModel model = load_and_inspect(options.model, options.load, monitor);
   const double voxel_size =
-      options.voxel_size.value_or(default_voxel_size(options.packing.limits, model.inspection.box));
+      options.voxel_size.value_or(default_voxel_size(options.packing.limits(), model.inspection.box));
   model = make_usable(std::move(model), {options.surface, options.max_hole, voxel_size}, monitor);
   report.input = model.input;
   report.surface = model.level_set ? OuterSurface::remeshed : OuterSurface::kept;
@@ -132,7 +132,7 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   std::optional<OuterWithHoles> with_holes;
   if (options.drainage) {
     monitor.stage("drain");
-    warn_of_wide_tubes(request.process, request.limits.roof, *options.drainage, monitor);
+    warn_of_wide_tubes(request.process, request.limits().roof, *options.drainage, monitor);
     auto [drainage, outer] =
         drain_packing(model, surface, packing, *options.drainage, options.tolerance, monitor);
     report.drainage = std::move(drainage);
@@ -140,7 +140,7 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   }
   report.packing_density = total_volume(packing) / model.inspection.filled_volume;
 
-  VoidPlan plan{packing.spheres, request.limits.roof};
+  VoidPlan plan{packing.spheres, request.limits().roof};
   const std::size_t outer_triangles = model.mesh.triangles.size();
   report.tolerance_used = tolerance_for(plan, options.tolerance, outer_triangles, options.max_triangles);
   if (report.tolerance_used > options.tolerance)

@@ -12,6 +12,7 @@
 #include "files/three_mf.h"
 #include "packing/adaptive.h"
 #include "pipeline/process_choice.h"
+#include "printing/materials.h"
 #include "printing/print_settings.h"
 
 namespace aerate {
@@ -32,23 +33,17 @@ enum class PackingMethod {
 // As on the command line.
 const char* name_of(PackingMethod method);
 
-// What the figures for mass and cost are computed with.
-struct MaterialFigures {
-  std::string name;
-  double density_g_cm3 = 0;
-  double price_per_kg = 0;  // in the user's own currency
-};
-
 // How a model is to be packed.
 struct PackingRequest {
   PackingMethod method = PackingMethod::adaptive;
-  PackingLimits limits = kDefaultLimits;
-  ProcessChoice process;          // what those limits are for, and where they came from
+  ProcessChoice process;          // under whose limits
   std::filesystem::path spheres;  // of the method `given`
   AdaptiveOptions stop;           // when the adaptive method stops; the hexagonal one has no such choice
   DeviceRequest device;
-  // If given, `limits.min_radius` is the least with which a void saves filament in this print.
+  // If given, the least radius is the least with which a void saves filament in this print.
   std::optional<PrintSettings> pays_in = std::nullopt;
+
+  PackingLimits limits() const { return packing_limits(process); }
 };
 
 struct PackOptions {
@@ -87,7 +82,7 @@ struct HollowOptions {
   // Remeshing closes holes up to this diameter, mm; a tenth of the model's diagonal if not given.
   std::optional<double> max_hole;
 
-  MaterialFigures material;
+  Material material;
 
   // How filament is printed, if that was said; else figures are for solid material.
   std::optional<PrintSettings> print;

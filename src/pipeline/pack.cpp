@@ -21,8 +21,9 @@ namespace {
 
 // Spheres of a file, which have to be a packing of this model under these limits.
 Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
+  const PackingLimits limits = request.limits();
   Packing packing;
-  packing.limits = request.limits;
+  packing.limits = limits;
   packing.spheres = read_sphere_table(request.spheres);
   packing.statistics.candidates = packing.spheres.size();
   packing.device.reason = "the spheres were given";
@@ -34,11 +35,10 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
   const std::string which =
       fmt::format("{}: sphere {} (radius {:.4g} mm at ({:.3f}, {:.3f}, {:.3f}) mm)", file, fault->sphere + 1,
                   sphere.radius, sphere.centre.x, sphere.centre.y, sphere.centre.z);
-  const bool has_roof = request.limits.roof.shapes(sphere.radius) ||
-                        (fault->kind == PackingFault::Kind::gap &&
-                         request.limits.roof.shapes(packing.spheres[fault->other].radius));
+  const bool has_roof =
+      limits.roof.shapes(sphere.radius) ||
+      (fault->kind == PackingFault::Kind::gap && limits.roof.shapes(packing.spheres[fault->other].radius));
   const char* const roof = has_roof ? " with the roofs that --bridge and --overhang ask for" : "";
-  const PackingLimits& limits = request.limits;
   const auto radius_fault = [&](const char* relation, const char* option, double limit) {
     return InputError(fmt::format("{} is {} {} {:.4g} mm", which, relation, option, limit),
                       fmt::format("give the {} it was packed with, or pack again", option));
@@ -53,12 +53,12 @@ Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
     case PackingFault::Kind::wall:
       throw InputError(
           fmt::format("{}{} leaves a wall of {:.4g} mm, the limit is {:.4g} mm", which, roof,
-                      fault->clearance, request.limits.wall),
+                      fault->clearance, limits.wall),
           fmt::format("give the {} it was packed with, or pack again", has_roof ? "--bridge" : "--wall"));
     case PackingFault::Kind::gap:
       throw InputError(
           fmt::format("{}{} leaves a gap of {:.4g} mm to sphere {}, the limit is {:.4g} mm", which, roof,
-                      fault->clearance, fault->other + 1, request.limits.gap),
+                      fault->clearance, fault->other + 1, limits.gap),
           fmt::format("give the {} it was packed with, or pack again", has_roof ? "--bridge" : "--gap"));
     case PackingFault::Kind::too_small:
       throw radius_fault("smaller than", "--min-radius", limits.min_radius);
@@ -86,13 +86,13 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
     case PackingMethod::adaptive: {
       AdaptiveOptions stop = request.stop;
       stop.volume = model.inspection.filled_volume;
-      return pack_adaptive(mesh, request.limits, stop, monitor, request.device);
+      return pack_adaptive(mesh, request.limits(), stop, monitor, request.device);
     }
     case PackingMethod::given:
       return given_packing(mesh, request);
     case PackingMethod::hexagonal:
-      require_no_roofs(request.limits);
-      return pack_hexagonal(mesh, request.limits, monitor, request.device);
+      require_no_roofs(request.limits());
+      return pack_hexagonal(mesh, request.limits(), monitor, request.device);
   }
   throw FailureError("unknown packing method");
 }
@@ -100,7 +100,7 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
 // Says what would fit, and which limit stands in the way.
 [[noreturn]] void refuse_empty(const PreparedModel& model, const SurfaceIndex& surface,
                                const PackingRequest& request) {
-  const PackingLimits& limits = request.limits;
+  const PackingLimits limits = request.limits();
   const std::string file = model.input.path.filename().string();
   const Sphere largest = largest_inscribed_sphere(surface);
   // Rounded first, so that nothing reads as -0.0.
@@ -204,7 +204,7 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   report.density = total_volume(report.packing) / model.inspection.filled_volume;
 
   log.stage("measure");
-  report.clearances = measure_clearances(surface, report.packing.spheres, options.packing.limits.roof);
+  report.clearances = measure_clearances(surface, report.packing.spheres, report.packing.limits.roof);
   log.stage("write");
   table.commit_text(sphere_table(report.packing, format));
   report.stages = log.finish();

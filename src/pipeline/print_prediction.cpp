@@ -73,23 +73,19 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
   if (!options.print || options.heavier == HeavierPrint::allow || request.method == PackingMethod::given)
     return request;
   const PrintSettings& settings = *options.print;
+  const PackingLimits limits = request.limits();
   const auto least_radius = break_even_radius(settings);
-  if (!least_radius || *least_radius > request.limits.max_radius)
-    refuse_all(request.limits, settings, least_radius);
+  if (!least_radius || *least_radius > limits.max_radius) refuse_all(limits, settings, least_radius);
   const double raised = rounded_up(*least_radius);
-  if (raised <= request.limits.min_radius) return request;
+  if (raised <= limits.min_radius) return request;
   monitor.notice(fmt::format(
       "at {:g} % infill a void saves filament only above a radius of {:g} mm: smaller ones are not "
       "made",
       in_percent(settings.infill), raised));
-  request.limits.min_radius = std::min(raised, request.limits.max_radius);
   request.pays_in = settings;
-  for (LimitOrigin& origin : request.process.origins) {
-    if (origin.limit != Limit::min_radius) continue;
-    origin.value = request.limits.min_radius;
-    origin.origin = fmt::format("break-even at {:g} % infill", in_percent(settings.infill));
-    origin.source = "docs/economics.md";
-  }
+  request.process.limits[Limit::min_radius] = {
+      std::min(raised, limits.max_radius), "docs/economics.md",
+      fmt::format("break-even at {:g} % infill", in_percent(settings.infill))};
   return request;
 }
 

@@ -1,9 +1,8 @@
 #include "pipeline/process_choice.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
-#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/roof.h"
@@ -12,36 +11,24 @@
 namespace aerate {
 namespace {
 
-std::string process_names() {
-  std::string names;
-  for (const Process& process : processes()) names += (names.empty() ? "" : ", ") + process.name;
-  return names;
+std::string default_of(const Process& process) {
+  return "default of " + process.name;
 }
 
-double value_of(const Process& process, Limit limit) {
-  const auto& figure = process[limit];
-  if (!figure) {
-    throw UsageError(fmt::format("process {}: no {}", process.name, name_of(limit)),
-                     fmt::format("give --{}, or \"{}\" in the process file", name_of(limit), name_of(limit)));
-  }
-  return figure->value;
-}
-
-std::optional<double> value_among(const std::vector<LimitOrigin>& origins, Limit limit) {
-  for (const LimitOrigin& origin : origins)
-    if (origin.limit == limit) return origin.value;
-  return std::nullopt;
+// The limits of a job, were it under all of them.
+Limits all_limits(const Process& process, const Limits& given) {
+  Limits limits = given;
+  for (const auto& [limit, figure] : process.limits)
+    limits.insert({limit, {figure.value, figure.source, default_of(process)}});
+  return limits;
 }
 
 // Whether ceilings are limited: by figures of the process or of the user, which come in pairs.
-bool limits_ceilings(const Process& process, const std::vector<GivenLimit>& given) {
-  const auto is_given = [&](Limit limit) {
-    return std::any_of(given.begin(), given.end(), [&](const GivenLimit& own) { return own.limit == limit; });
-  };
-  const bool has_overhang = process[Limit::overhang] || is_given(Limit::overhang);
-  const bool has_bridge = process[Limit::bridge] || is_given(Limit::bridge);
-  if (has_overhang && has_bridge) return true;
-  if (is_given(Limit::overhang) || is_given(Limit::bridge)) {
+bool limits_ceilings(const Process& process, const Limits& given) {
+  const Limits all = all_limits(process, given);
+  const bool has_overhang = all.contains(Limit::overhang);
+  if (has_overhang && all.contains(Limit::bridge)) return true;
+  if (given.contains(Limit::overhang) || given.contains(Limit::bridge)) {
     throw UsageError(
         fmt::format("process {}: a limit for ceilings needs both --overhang and --bridge", process.name),
         fmt::format("give --{} too", has_overhang ? "bridge" : "overhang"));
@@ -49,17 +36,20 @@ bool limits_ceilings(const Process& process, const std::vector<GivenLimit>& give
   return false;
 }
 
-std::string described(const LimitOrigin& origin) {
-  return fmt::format("{} {:g} mm ({})", name_of(origin.limit), origin.value, origin.origin);
+std::string described(const Limits& limits, Limit limit) {
+  const LimitValue& chosen = limits.at(limit);
+  return fmt::format("{} {:g} mm ({})", row_of(limit).name, chosen.value, chosen.origin);
 }
 
 // A wall or gap that is too thin to be printed, even if the process file itself says so.
-void require_printable(const Process& process, const LimitOrigin& asked, Limit least) {
-  const auto& figure = process[least];
-  if (!figure || asked.value >= figure->value) return;
+void require_printable(const ProcessChoice& choice, Limit limit, Limit least) {
+  const Process& process = choice.process;
+  if (!process.limits.contains(least)) return;
+  const LimitValue& figure = process.limits.at(least);
+  if (choice.limits.at(limit).value >= figure.value) return;
   throw UsageError(fmt::format("{}: {} is less than {} can print: {:g} mm ({})", process.name,
-                               described(asked), process.name, figure->value, figure->source),
-                   fmt::format("give a --{} of {:g} mm or more", name_of(asked.limit), figure->value));
+                               described(choice.limits, limit), process.name, figure.value, figure.source),
+                   fmt::format("give a {} of {:g} mm or more", row_of(limit).option, figure.value));
 }
 
 }  // namespace
@@ -75,17 +65,66 @@ Process choose_process(const std::string& name_or_file) {
   return *process;
 }
 
-PackingLimits packing_limits(const ProcessChoice& choice) {
-  const auto value = [&](Limit limit) {
-    const auto found = value_among(choice.origins, limit);
-    if (!found) throw FailureError(fmt::format("no limit {}", name_of(limit)));
-    return *found;
+ProcessChoice limits_under(const Process& process, const Limits& given, ProcessCheck check) {
+  const bool has_ceilings = limits_ceilings(process, given);
+  ProcessChoice choice{.process = process, .limits = all_limits(process, given)};
+  std::erase_if(choice.limits, [&](const auto& chosen) {
+    const LimitGroup group = row_of(chosen.first).group;
+    return group != LimitGroup::packing && (group != LimitGroup::ceilings || !has_ceilings);
+  });
+  const PackingLimits limits = packing_limits(choice);
+  const std::string min_radius = described(choice.limits, Limit::min_radius);
+  if (!(limits.min_radius > 0))
+    throw UsageError(min_radius + " must be more than 0 mm", "give a --min-radius");
+  if (limits.min_radius > limits.max_radius) {
+    throw UsageError(
+        fmt::format("--{} is more than --{}", min_radius, described(choice.limits, Limit::max_radius)),
+        "give a smaller --min-radius or a larger --max-radius");
+  }
+  if (check == ProcessCheck::strict) {
+    require_printable(choice, Limit::wall, Limit::least_wall);
+    require_printable(choice, Limit::gap, Limit::least_gap);
+  }
+  return choice;
+}
+
+ProcessChoice kept_to_balls_without_roofs(ProcessChoice choice) {
+  const PackingLimits limits = packing_limits(choice);
+  LimitValue& largest = choice.limits.at(Limit::max_radius);
+  if (limits.roof.shapes(limits.max_radius) && largest.origin == default_of(choice.process))
+    largest = {largest_without_roof(limits.roof), "", "the largest of a lattice that need no roof"};
+  return choice;
+}
+
+ProcessChoice with_tubes(ProcessChoice choice, const Limits& given) {
+  const Limits all = all_limits(choice.process, given);
+  const auto add = [&](Limit limit, const char* tubes) {
+    if (!all.contains(limit)) {
+      throw UsageError(
+          fmt::format("process {}: --drain needs the diameter of {}", choice.process.name, tubes),
+          fmt::format("give {}", row_of(limit).option));
+    }
+    return (choice.limits[limit] = all.at(limit)).value;
   };
-  const auto overhang = value_among(choice.origins, Limit::overhang);
-  const auto bridge = value_among(choice.origins, Limit::bridge);
-  Roof roof =
-      make_roof({.degrees = overhang.value_or(45), .bridge = bridge.value_or(0), .up = choice.direction.up});
-  if (!overhang || !bridge) roof.widest_ball = Roof{}.widest_ball;
+  const double channel = add(Limit::channel, "channels"), hole = add(Limit::escape_hole, "escape holes");
+  if (hole < channel) {
+    throw UsageError(
+        fmt::format("escape holes of {:g} mm are narrower than channels of {:g} mm", hole, channel),
+        "give a larger --hole-diameter or a smaller --channel-diameter");
+  }
+  return choice;
+}
+
+PackingLimits packing_limits(const ProcessChoice& choice) {
+  const auto value = [&](Limit limit) { return choice.limits.at(limit).value; };
+  const bool limits_ceilings = choice.limits.contains(Limit::bridge);
+  Overhang overhang{.up = choice.direction.up};
+  if (limits_ceilings) {
+    overhang.degrees = value(Limit::overhang);
+    overhang.bridge = value(Limit::bridge);
+  }
+  Roof roof = make_roof(overhang);
+  if (!limits_ceilings) roof.widest_ball = Roof{}.widest_ball;
   return {.wall = value(Limit::wall),
           .gap = value(Limit::gap),
           .min_radius = value(Limit::min_radius),
@@ -93,52 +132,10 @@ PackingLimits packing_limits(const ProcessChoice& choice) {
           .roof = roof};
 }
 
-ProcessChoice limits_under(const Process& process, const std::vector<GivenLimit>& given, ProcessCheck check) {
-  ProcessChoice choice{.process = process, .origins = {}};
-  const auto choose = [&](Limit limit) {
-    LimitOrigin chosen{.limit = limit, .value = 0, .origin = "default of " + process.name, .source = {}};
-    bool overridden = false;
-    for (const GivenLimit& own : given) {
-      if (own.limit != limit) continue;
-      chosen.value = own.value;
-      chosen.origin = own.origin;
-      overridden = true;
-    }
-    if (!overridden) {
-      chosen.value = value_of(process, limit);
-      chosen.source = process[limit]->source;
-      chosen.is_default = true;
-    }
-    choice.origins.push_back(chosen);
-  };
-  for (const Limit limit : {Limit::wall, Limit::gap, Limit::min_radius, Limit::max_radius}) choose(limit);
-  if (limits_ceilings(process, given))
-    for (const Limit limit : {Limit::overhang, Limit::bridge}) choose(limit);
-
-  const PackingLimits limits = packing_limits(choice);
-  if (!(limits.min_radius > 0))
-    throw UsageError(described(choice.origins[2]) + " must be more than 0 mm", "give a --min-radius");
-  if (limits.min_radius > limits.max_radius) {
-    throw UsageError(
-        fmt::format("--{} is more than --{}", described(choice.origins[2]), described(choice.origins[3])),
-        "give a smaller --min-radius or a larger --max-radius");
-  }
-  if (check == ProcessCheck::strict) {
-    require_printable(process, choice.origins[0], Limit::least_wall);
-    require_printable(process, choice.origins[1], Limit::least_gap);
-  }
-  return choice;
-}
-
-void keep_to_balls_without_roofs(ProcessChoice& choice) {
-  const PackingLimits limits = packing_limits(choice);
-  if (!limits.roof.shapes(limits.max_radius)) return;
-  for (LimitOrigin& origin : choice.origins) {
-    if (origin.limit != Limit::max_radius || !origin.is_default) continue;
-    origin.value = largest_without_roof(limits.roof);
-    origin.origin = "the largest of a lattice that need no roof";
-    origin.source.clear();
-  }
+DrainageRequest drainage_request(const ProcessChoice& choice, std::vector<Vec3d> escape_holes) {
+  return {.channel_radius = choice.limits.at(Limit::channel).value / 2,
+          .hole_radius = choice.limits.at(Limit::escape_hole).value / 2,
+          .escape_holes = std::move(escape_holes)};
 }
 
 void warn_of_trapped_material(const Process& process, Monitor& monitor) {
@@ -150,18 +147,29 @@ void warn_of_trapped_material(const Process& process, Monitor& monitor) {
                   process.name));
 }
 
+std::string process_names() {
+  std::string names;
+  for (const Process& process : processes()) names += (names.empty() ? "" : ", ") + process.name;
+  return names;
+}
+
+std::string processes_that(const std::function<bool(const Process&)>& condition) {
+  std::string names;
+  for (const Process& process : processes())
+    if (condition(process)) names += (names.empty() ? "" : ", ") + process.name;
+  if (const std::size_t last = names.rfind(", "); last != std::string::npos) names.replace(last, 2, " and ");
+  return names;
+}
+
 std::string processes_in_words() {
   std::string text;
   const auto line = std::back_inserter(text);
   for (const Process& process : processes()) {
     fmt::format_to(line, "{}: {}; material {}{}\n", process.name, process.title, process.material,
                    process.drainage == Drainage::needed ? "; closed voids have to be drained" : "");
-    for (std::size_t i = 0; i < kLimitCount; ++i) {
-      const auto limit = static_cast<Limit>(i);
-      const auto& figure = process[limit];
-      if (figure)
-        fmt::format_to(line, "  {:<12}{:>5g} {}: {}\n", name_of(limit), figure->value,
-                       limit == Limit::overhang ? "deg" : "mm", figure->source);
+    for (const auto& [limit, figure] : process.limits) {
+      const LimitRow& row = row_of(limit);
+      fmt::format_to(line, "  {:<12}{:>5g} {}: {}\n", row.name, figure.value, row.unit.symbol, figure.source);
     }
   }
   return text;

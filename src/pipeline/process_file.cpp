@@ -1,5 +1,6 @@
 #include "pipeline/process_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -39,15 +40,14 @@ std::string text_of(const std::filesystem::path& path, const std::string& key, c
   return value.get<std::string>();
 }
 
-SourcedValue figure_of(const std::filesystem::path& path, const std::string& key, const Json& given) {
+LimitValue figure_of(const std::filesystem::path& path, const std::string& key, const Json& given) {
   const bool has_source = given.is_object();
   if (has_source && (!given.contains("value") || given.size() > (given.contains("source") ? 2U : 1U)))
     refuse(path, fmt::format("\"{}\" must be a number or {{\"value\": .., \"source\": ..}}", key));
   const Json& number = has_source ? given.at("value") : given;
   if (!number.is_number()) refuse(path, fmt::format("\"{}\" is not a number", key));
   const auto value = number.get<double>();
-  constexpr double kMost = 1e5;
-  if (!std::isfinite(value) || value < 0 || value > kMost)
+  if (!std::isfinite(value) || value < 0 || value > kLongest)
     refuse(path, fmt::format("\"{}\" is {}, which is out of range", key, value));
   std::string source = path.filename().string();
   if (has_source && given.contains("source")) source += ": " + text_of(path, "source", given.at("source"));
@@ -60,9 +60,8 @@ Process base_of(const std::filesystem::path& path, const Json& json) {
   if (base == nullptr) refuse(path, fmt::format("unknown base \"{}\"", name));
   Process process = *base;
   process.name = path.stem().string();
-  for (std::size_t i = 0; i < kLimitCount; ++i)
-    if (process.limits[i])
-      process.limits[i]->source = fmt::format("base {}: {}", name, process.limits[i]->source);
+  for (auto& [limit, figure] : process.limits)
+    figure.source = fmt::format("base {}: {}", name, figure.source);
   return process;
 }
 
@@ -73,8 +72,8 @@ Process read_process_file(const std::filesystem::path& path) {
   if (!json.is_object()) refuse(path, "a process file holds one JSON object");
   Process process = base_of(path, json);
   for (const auto& [key, value] : json.items()) {
-    if (const auto limit = limit_named(key)) {
-      process[*limit] = figure_of(path, key, value);
+    if (const auto row = std::ranges::find(limit_rows(), key, &LimitRow::name); row != limit_rows().end()) {
+      process.limits[row->limit] = figure_of(path, key, value);
     } else if (key == "name") {
       process.name = text_of(path, key, value);
     } else if (key == "title") {
@@ -88,11 +87,12 @@ Process read_process_file(const std::filesystem::path& path) {
       refuse(path, fmt::format("unknown key \"{}\"", key));
     }
   }
-  const bool gives_one = json.contains(name_of(Limit::overhang)) || json.contains(name_of(Limit::bridge));
-  if (gives_one && !(process[Limit::overhang] && process[Limit::bridge])) {
+  const bool has_overhang = process.limits.contains(Limit::overhang);
+  const bool gives_one = json.contains("overhang") || json.contains("bridge");
+  if (gives_one && !(has_overhang && process.limits.contains(Limit::bridge))) {
     refuse(path,
            fmt::format("a limit for ceilings needs both \"overhang\" and \"bridge\", there is no \"{}\"",
-                       name_of(process[Limit::overhang] ? Limit::bridge : Limit::overhang)));
+                       has_overhang ? "bridge" : "overhang"));
   }
   return process;
 }

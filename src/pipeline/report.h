@@ -75,7 +75,7 @@ struct HollowReport {
   Balance balance;
   // Absent for a process that prints no filament.
   std::optional<PrintPrediction> print;
-  MaterialFigures material;
+  Material material;
   std::vector<StageCost> stages;
   std::vector<std::string> notices;
 };

@@ -7,7 +7,6 @@
 #include "files/sphere_table.h"
 #include "pipeline/budget.h"
 #include "pipeline/job_log.h"
-#include "pipeline/material_choice.h"
 #include "pipeline/memory.h"
 #include "pipeline/thread_limit.h"
 #include "printing/carve.h"
@@ -60,15 +59,6 @@ TEST(ThreadLimit, HoldsAndPassesExceptionsOn) {
     EXPECT_EQ(concurrency, threads);
   }
   EXPECT_THROW(run_with_threads(2, [] { throw InterruptedError(); }), InterruptedError);
-}
-
-TEST(Material, FiguresCanBeOverridden) {
-  EXPECT_EQ(choose_material("petg", {}, {}).name, "PETG");
-  const MaterialFigures dear = choose_material("PLA", {}, 90);
-  EXPECT_EQ(dear.price_per_kg, 90);
-  EXPECT_EQ(dear.density_g_cm3, choose_material("PLA", {}, {}).density_g_cm3);
-  EXPECT_EQ(choose_material("oak", 0.7, 3).density_g_cm3, 0.7);
-  EXPECT_TRUE(contains(message_of<UsageError>([] { choose_material("oak", 0.7, {}); }), "PLA"));
 }
 
 TEST(Budget, ToleranceIsLoosenedOnlyAsFarAsNeeded) {

@@ -2,30 +2,43 @@
 
 #include "core/error.h"
 #include "printing/materials.h"
+#include "tests/support/caught.h"
 
 namespace aerate {
 namespace {
 
+using test::contains;
+using test::message_of;
+
 TEST(Materials, AreFoundInAnyCase) {
-  EXPECT_EQ(find_material("PLA").density, 1.24);
-  EXPECT_EQ(find_material("petg").density, 1.27);
-  EXPECT_EQ(find_material("Abs").density, 1.04);
-  EXPECT_EQ(find_material("RESIN").density, 1.10);
-  EXPECT_EQ(find_material("pa12").density, 1.01);
-  for (const Material& material : materials()) EXPECT_GT(material.price, 0) << material.name;
+  EXPECT_EQ(choose_material("PLA").density_g_cm3, 1.24);
+  EXPECT_EQ(choose_material("petg").density_g_cm3, 1.27);
+  EXPECT_EQ(choose_material("Abs").density_g_cm3, 1.04);
+  EXPECT_EQ(choose_material("RESIN").density_g_cm3, 1.10);
+  EXPECT_EQ(choose_material("pa12").density_g_cm3, 1.01);
+  for (const Material& material : materials()) EXPECT_GT(material.price_per_kg, 0) << material.name;
 }
 
 TEST(Materials, AnUnknownOneNamesThoseThereAre) {
   try {
-    find_material("PLA+");
+    choose_material("PLA+");
     FAIL() << "PLA+ is not a preset";
   } catch (const UsageError& error) {
     EXPECT_STREQ(error.what(), "unknown material \"PLA+\"");
     EXPECT_EQ(error.hint(),
               "use one of PLA, PETG, ABS, resin, PA12, AlSi10Mg, or give --density and --price");
   }
-  EXPECT_THROW(find_material(""), UsageError);
-  EXPECT_THROW(find_material("PL"), UsageError);
+  EXPECT_THROW(choose_material(""), UsageError);
+  EXPECT_THROW(choose_material("PL"), UsageError);
+}
+
+TEST(Materials, FiguresCanBeOverridden) {
+  EXPECT_EQ(choose_material("petg", {}, {}).name, "PETG");
+  const Material dear = choose_material("PLA", {}, 90);
+  EXPECT_EQ(dear.price_per_kg, 90);
+  EXPECT_EQ(dear.density_g_cm3, choose_material("PLA", {}, {}).density_g_cm3);
+  EXPECT_EQ(choose_material("oak", 0.7, 3).density_g_cm3, 0.7);
+  EXPECT_TRUE(contains(message_of<UsageError>([] { choose_material("oak", 0.7, {}); }), "PLA"));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include "printing/economics.h"
 #include "printing/materials.h"
@@ -11,25 +13,20 @@ namespace {
 TEST(Processes, AreTheFourAndFdmIsTheDefault) {
   for (const char* name : {"fdm", "sla", "sls", "metal"}) ASSERT_NE(find_process(name), nullptr) << name;
   EXPECT_EQ(find_process("FDM!"), nullptr);
-  const Process& fdm = *find_process("fdm");
-  EXPECT_EQ(fdm[Limit::wall]->value, kDefaultLimits.wall);
-  EXPECT_EQ(fdm[Limit::gap]->value, kDefaultLimits.gap);
-  EXPECT_EQ(fdm[Limit::min_radius]->value, kDefaultLimits.min_radius);
-  EXPECT_EQ(fdm[Limit::max_radius]->value, kDefaultLimits.max_radius);
+  EXPECT_EQ(processes().front().name, "fdm");
 }
 
 TEST(Processes, EveryFigureHasASourceAndCanBePrinted) {
   for (const Process& process : processes()) {
     SCOPED_TRACE(process.name);
-    for (const auto& figure : process.limits) {
-      if (figure) {
-        EXPECT_GT(figure->source.size(), 3U);
-      }
-    }
-    EXPECT_GE(process[Limit::wall]->value, process[Limit::least_wall]->value);
-    EXPECT_GE(process[Limit::gap]->value, process[Limit::least_gap]->value);
-    EXPECT_LT(process[Limit::min_radius]->value, process[Limit::max_radius]->value);
-    EXPECT_NO_THROW(find_material(process.material));
+    for (const auto& [limit, figure] : process.limits)
+      EXPECT_GT(figure.source.size(), 3U) << row_of(limit).name;
+    for (const LimitRow& row : limit_rows())
+      EXPECT_TRUE(process.limits.contains(row.limit) || row.group != LimitGroup::packing) << row.name;
+    EXPECT_GE(process.limits.at(Limit::wall).value, process.limits.at(Limit::least_wall).value);
+    EXPECT_GE(process.limits.at(Limit::gap).value, process.limits.at(Limit::least_gap).value);
+    EXPECT_LT(process.limits.at(Limit::min_radius).value, process.limits.at(Limit::max_radius).value);
+    EXPECT_NO_THROW(choose_material(process.material));
   }
 }
 
@@ -38,10 +35,10 @@ TEST(Processes, WhatLeavesMaterialInVoidsHasChannelsThatFitIntoThem) {
     SCOPED_TRACE(process.name);
     const bool needed = process.drainage == Drainage::needed;
     EXPECT_EQ(needed, process.name != "fdm");
-    EXPECT_EQ(process[Limit::channel].has_value(), needed);
-    EXPECT_EQ(process[Limit::escape_hole].has_value(), needed);
+    EXPECT_EQ(process.limits.contains(Limit::channel), needed);
+    EXPECT_EQ(process.limits.contains(Limit::escape_hole), needed);
     if (needed) {
-      EXPECT_LT(process[Limit::channel]->value, 2 * process[Limit::min_radius]->value);
+      EXPECT_LT(process.limits.at(Limit::channel).value, 2 * process.limits.at(Limit::min_radius).value);
     }
   }
 }
@@ -52,18 +49,20 @@ TEST(Processes, TheLargestVoidOfFdmPaysAtAnInfillOf15Percent) {
   settings.infill = 0.15;
   const std::optional<double> least = break_even_radius(settings);
   ASSERT_TRUE(least.has_value());
-  EXPECT_GT(fdm[Limit::max_radius]->value, *least);
+  EXPECT_GT(fdm.limits.at(Limit::max_radius).value, *least);
   // And its ceilings are limited.
-  EXPECT_TRUE(fdm[Limit::overhang].has_value());
-  EXPECT_TRUE(fdm[Limit::bridge].has_value());
+  EXPECT_TRUE(fdm.limits.contains(Limit::overhang));
+  EXPECT_TRUE(fdm.limits.contains(Limit::bridge));
 }
 
-TEST(Processes, LimitsAreFoundByTheirNames) {
+TEST(Limits, HaveTheirRowsInOrderUnderNamesOfTheirOwn) {
+  std::set<std::string_view> names;
   for (std::size_t i = 0; i < kLimitCount; ++i) {
     const auto limit = static_cast<Limit>(i);
-    EXPECT_EQ(limit_named(name_of(limit)), limit);
+    EXPECT_EQ(row_of(limit).limit, limit);
+    names.insert(row_of(limit).name);
   }
-  EXPECT_FALSE(limit_named("walls"));
+  EXPECT_EQ(names.size(), kLimitCount);
 }
 
 }  // namespace
