@@ -1,26 +1,17 @@
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cerrno>
 #include <cstdio>
-#include <exception>
 #include <iostream>
-#include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "cli/commands.h"
 #include "cli/config_file.h"
-#include "cli/hollow_command.h"
-#include "cli/hook_command.h"
-#include "cli/inspect_command.h"
-#include "cli/interrupt.h"
-#include "cli/pack_command.h"
 #include "cli/process_options.h"
-#include "cli/slice_command.h"
 #include "core/error.h"
 #include "packing/device.h"
 #include "pipeline/process_choice.h"
@@ -51,7 +42,7 @@ std::string about_config(const CLI::App& app, std::string what) {
 }
 
 // CLI11's message as an error of the program's own.
-[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error, const HookCommand& hook) {
+[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
   std::string what = error.what();
   while (!what.empty() && what.back() == '\n') what.pop_back();
   if (dynamic_cast<const CLI::ConfigError*>(&error) != nullptr) {
@@ -63,20 +54,8 @@ std::string about_config(const CLI::App& app, std::string what) {
   const std::vector<std::string> unknown = app.remaining();
   if (app.get_subcommands().empty() && !unknown.empty()) what = "'" + unknown.front() + "' is no command";
   const UsageError refusal(what, "see '" + command + " --help'");
-  if (hook.chosen()) throw HookCommand::on_one_line(refusal);
+  if (app.got_subcommand("hook")) throw on_one_line(refusal);
   throw refusal;
-}
-
-void run_hook(const HookCommand& hook, InterruptGuard& interrupt) {
-  try {
-    hook.run(interrupt);
-  } catch (const Error& error) {
-    throw HookCommand::on_one_line(error);
-  } catch (const std::bad_alloc&) {
-    throw FailureError("out of memory; the G-code is as it was");
-  } catch (const std::exception& error) {
-    throw HookCommand::on_one_line(FailureError(error.what(), "this should not happen: please report it"));
-  }
 }
 
 std::string version_and_devices() {
@@ -107,32 +86,21 @@ ExitCode run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   const ConfigFile config(app);
-  HollowCommand hollow(app, config);
-  PackCommand pack(app, config);
-  InspectCommand inspect(app);
-  SliceCommand slice(app, config);
-  HookCommand hook(app, config);
+  add_hollow_command(app, config);
+  add_pack_command(app, config);
+  add_inspect_command(app);
+  add_slice_command(app, config);
+  add_hook_command(app, config);
 
   try {
     app.parse(argc, argv);
   } catch (const ProcessListRequest&) {
     std::cout << processes_in_words();
-    require_stdout_written();
-    return ExitCode::done;
   } catch (const CLI::Success& request) {  // --help, --version
     app.exit(request);
-    require_stdout_written();
-    return ExitCode::done;
   } catch (const CLI::ParseError& error) {
-    refuse(app, error, hook);
+    refuse(app, error);
   }
-
-  InterruptGuard interrupt;
-  if (hollow.chosen()) hollow.run(interrupt);
-  if (pack.chosen()) pack.run(interrupt);
-  if (inspect.chosen()) inspect.run(interrupt);
-  if (slice.chosen()) slice.run(interrupt);
-  if (hook.chosen()) run_hook(hook, interrupt);
   require_stdout_written();
   return ExitCode::done;
 }

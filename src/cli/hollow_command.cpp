@@ -1,11 +1,11 @@
-#include "cli/hollow_command.h"
-
 #include <CLI/CLI.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "cli/commands.h"
 #include "cli/drainage_options.h"
 #include "cli/model_options.h"
 #include "cli/numbers.h"
@@ -17,15 +17,15 @@
 #include "printing/materials.h"
 
 namespace aerate::cli {
+namespace {
 
-struct HollowCommand::Options {
-  Options(CLI::App& app, const ConfigFile& config)
-      : command(*app.add_subcommand("hollow", "Remove packed spheres from a model and write the result")),
-        model(command),
+struct HollowCommand {
+  HollowCommand(CLI::App& command, const ConfigFile& config)
+      : model(command),
         packing(command, config),
         drainage(command, config),
         print(command),
-        run(command) {
+        run_options(command) {
     command.add_option("-o,--output", output, "The result: .stl, .3mf, .obj or .ply (required)")
         ->required()
         ->type_name("FILE");
@@ -118,12 +118,17 @@ struct HollowCommand::Options {
     return options;
   }
 
-  CLI::App& command;
+  void run() const {
+    const HollowOptions options = to_pipeline();
+    run_reported(run_options, {options.model, options.output},
+                 [&](Monitor& monitor) { return hollow(options, monitor); });
+  }
+
   ModelOptions model;
   PackingCommandOptions packing;
   DrainageOptions drainage;
   PrintOptions print;
-  RunOptions run;
+  RunOptions run_options;
   std::string output;
   std::string void_form = "voids";
   std::string flavor = "prusa";
@@ -139,18 +144,12 @@ struct HollowCommand::Options {
   std::optional<double> price;
 };
 
-HollowCommand::HollowCommand(CLI::App& app, const ConfigFile& config)
-    : options_(std::make_unique<Options>(app, config)) {}
-HollowCommand::~HollowCommand() = default;
+}  // namespace
 
-bool HollowCommand::chosen() const {
-  return options_->command.parsed();
-}
-
-void HollowCommand::run(InterruptGuard& interrupt) const {
-  const HollowOptions options = options_->to_pipeline();
-  run_reported(options_->run, {options.model, options.output}, interrupt,
-               [&](Monitor& monitor) { return hollow(options, monitor); });
+void add_hollow_command(CLI::App& app, const ConfigFile& config) {
+  CLI::App& command =
+      *app.add_subcommand("hollow", "Remove packed spheres from a model and write the result");
+  command.callback([job = std::make_shared<HollowCommand>(command, config)] { job->run(); });
 }
 
 }  // namespace aerate::cli

@@ -1,19 +1,18 @@
-#include "cli/hook_command.h"
-
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
+#include <new>
 #include <string>
 #include <system_error>
 
+#include "cli/commands.h"
 #include "cli/form_options.h"
 #include "cli/model_options.h"
-#include "cli/report_output.h"
-#include "cli/slice_report.h"
-#include "cli/terminal.h"
+#include "cli/run_reported.h"
 #include "core/error.h"
 #include "pipeline/hook.h"
-#include "pipeline/thread_limit.h"
 
 namespace aerate::cli {
 namespace {
@@ -33,17 +32,13 @@ std::string own_path() {
   return error ? std::string("aerate") : path.string();
 }
 
-}  // namespace
-
-struct HookCommand::Options {
-  Options(CLI::App& app, const ConfigFile& config)
-      : command(
-            *app.add_subcommand("hook", "Post-process a slicer's G-code: hollow, slice again, replace it")),
-        model(command, "--model",
+struct HookCommand {
+  HookCommand(CLI::App& command, const ConfigFile& config)
+      : model(command, "--model",
               "The model on the plate, STL or any other that is read, or the project as 3MF; without it the "
               "G-code is only annotated"),
         form(command, config),
-        run(command) {
+        run_options(command) {
     command.add_option("FILE", gcode, "The G-code; slicers append it to the script's line")->type_name("");
     command
         .add_option("--print-setup", setup,
@@ -62,24 +57,47 @@ struct HookCommand::Options {
     return line + " --model " + quoted(file);
   }
 
-  CLI::App& command;
+  void run() const {
+    if (!setup.empty()) {
+      std::cout << setup_line() << '\n';
+      return;
+    }
+    if (gcode.empty()) throw UsageError("FILE is required", "see 'aerate hook --help'");
+    HookOptions options;
+    options.gcode = gcode;
+    options.slicer_path = form.slicer_path;
+    options.form = form.choice();
+    options.modifier_infill_percent = form.modifier_infill_percent;
+    options.hollow = form.hollow(model);
+    // Slicers show what a script writes to standard error as an error: notices go into the report alone.
+    run_reported(
+        run_options, {options.gcode, options.hollow.model},
+        [&](Monitor& monitor) { return run_hook(options, monitor); }, Verbosity::quiet);
+  }
+
   ModelOptions model;
   FormOptions form;
-  RunOptions run;
+  RunOptions run_options;
   std::string gcode;
   std::string setup;
 };
 
-HookCommand::HookCommand(CLI::App& app, const ConfigFile& config)
-    : options_(std::make_unique<Options>(app, config)) {}
-HookCommand::~HookCommand() = default;
-
-bool HookCommand::chosen() const {
-  return options_->command.parsed();
+void run_for_slicer(const HookCommand& hook) {
+  try {
+    hook.run();
+  } catch (const Error& error) {
+    throw on_one_line(error);
+  } catch (const std::bad_alloc&) {
+    throw FailureError("out of memory; the G-code is as it was");
+  } catch (const std::exception& error) {
+    throw on_one_line(FailureError(error.what(), "this should not happen: please report it"));
+  }
 }
 
+}  // namespace
+
 // Of several lines the first says what failed, and the last of what a program printed mostly why.
-Error HookCommand::on_one_line(const Error& error) {
+Error on_one_line(const Error& error) {
   std::string text = error.what();
   while (text.ends_with('\n')) text.pop_back();
   const std::size_t first_end = text.find('\n');
@@ -89,25 +107,10 @@ Error HookCommand::on_one_line(const Error& error) {
   return {error.code(), text};
 }
 
-void HookCommand::run(InterruptGuard& interrupt) const {
-  if (!options_->setup.empty()) {
-    std::cout << options_->setup_line() << '\n';
-    return;
-  }
-  if (options_->gcode.empty()) throw UsageError("FILE is required", "see 'aerate hook --help'");
-  HookOptions options;
-  options.gcode = options_->gcode;
-  options.slicer_path = options_->form.slicer_path;
-  options.form = options_->form.choice();
-  options.modifier_infill_percent = options_->form.modifier_infill_percent;
-  options.hollow = options_->form.hollow(options_->model);
-
-  // Slicers show what a script writes to standard error as an error: notices go into the report alone.
-  TerminalMonitor monitor(interrupt, Verbosity::quiet);
-  ReportOutput output(options_->run, {options.gcode, options.hollow.model}, monitor);
-  HookReport report;
-  run_with_threads(options_->run.threads, [&] { report = run_hook(options, monitor); });
-  output.write([&] { return to_text(report); }, [&] { return to_json(report); });
+void add_hook_command(CLI::App& app, const ConfigFile& config) {
+  CLI::App& command =
+      *app.add_subcommand("hook", "Post-process a slicer's G-code: hollow, slice again, replace it");
+  command.callback([job = std::make_shared<HookCommand>(command, config)] { run_for_slicer(*job); });
 }
 
 }  // namespace aerate::cli

@@ -1,42 +1,39 @@
-#include "cli/inspect_command.h"
-
 #include <CLI/CLI.hpp>
+#include <memory>
 
+#include "cli/commands.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
 #include "pipeline/inspect_model.h"
 
 namespace aerate::cli {
+namespace {
 
-struct InspectCommand::Options {
-  explicit Options(CLI::App& app)
-      : command(*app.add_subcommand("inspect", "Tell what is right and wrong with a model")),
-        model(command),
-        run(command) {
+struct InspectCommand {
+  explicit InspectCommand(CLI::App& command) : model(command), run_options(command) {
     command.add_flag("--self-intersections", self_intersections,
                      "Also look for triangles that intersect each other (slow for large models)");
   }
 
-  CLI::App& command;
+  void run() const {
+    InspectOptions options;
+    options.model = model.path;
+    options.load = model.load();
+    if (self_intersections) options.self_intersections = SelfIntersectionSearch::on;
+    run_reported(run_options, {options.model},
+                 [&](Monitor& monitor) { return inspect_model(options, monitor); });
+  }
+
   ModelOptions model;
-  RunOptions run;
+  RunOptions run_options;
   bool self_intersections = false;
 };
 
-InspectCommand::InspectCommand(CLI::App& app) : options_(std::make_unique<Options>(app)) {}
-InspectCommand::~InspectCommand() = default;
+}  // namespace
 
-bool InspectCommand::chosen() const {
-  return options_->command.parsed();
-}
-
-void InspectCommand::run(InterruptGuard& interrupt) const {
-  InspectOptions options;
-  options.model = options_->model.path;
-  options.load = options_->model.load();
-  if (options_->self_intersections) options.self_intersections = SelfIntersectionSearch::on;
-  run_reported(options_->run, {options.model}, interrupt,
-               [&](Monitor& monitor) { return inspect_model(options, monitor); });
+void add_inspect_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("inspect", "Tell what is right and wrong with a model");
+  command.callback([job = std::make_shared<InspectCommand>(command)] { job->run(); });
 }
 
 }  // namespace aerate::cli

@@ -1,8 +1,13 @@
 #include "cli/json_parts.h"
 
-#include "cli/report_json.h"
-
 namespace aerate::cli {
+namespace {
+
+// Version of the JSON schemas of docs/report.md: grows when a field changes its meaning or goes away, not
+// when one is added.
+constexpr int kReportSchemaVersion = 1;
+
+}  // namespace
 
 Json report_header(const char* command) {
   return {{"schema", std::string("aerate.") + command},

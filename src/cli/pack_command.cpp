@@ -1,20 +1,18 @@
-#include "cli/pack_command.h"
-
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 
+#include "cli/commands.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
 #include "pipeline/pack.h"
 
 namespace aerate::cli {
+namespace {
 
-struct PackCommand::Options {
-  Options(CLI::App& app, const ConfigFile& config)
-      : command(*app.add_subcommand("pack", "Pack spheres in a closed model and write them as a table")),
-        model(command),
-        packing(command, config),
-        run(command) {
+struct PackCommand {
+  PackCommand(CLI::App& command, const ConfigFile& config)
+      : model(command), packing(command, config), run_options(command) {
     command
         .add_option("-o,--output", output,
                     "The spheres: .csv (a line x,y,z,radius,kind each), .json or .ply (required)")
@@ -22,29 +20,27 @@ struct PackCommand::Options {
         ->type_name("FILE");
   }
 
-  CLI::App& command;
+  void run() const {
+    PackOptions options;
+    options.model = model.path;
+    options.output = output;
+    options.load = model.load();
+    options.packing = packing.request();
+    run_reported(run_options, {options.model, options.output},
+                 [&](Monitor& monitor) { return pack(options, monitor); });
+  }
+
   ModelOptions model;
   PackingCommandOptions packing;
-  RunOptions run;
+  RunOptions run_options;
   std::string output;
 };
 
-PackCommand::PackCommand(CLI::App& app, const ConfigFile& config)
-    : options_(std::make_unique<Options>(app, config)) {}
-PackCommand::~PackCommand() = default;
+}  // namespace
 
-bool PackCommand::chosen() const {
-  return options_->command.parsed();
-}
-
-void PackCommand::run(InterruptGuard& interrupt) const {
-  PackOptions options;
-  options.model = options_->model.path;
-  options.output = options_->output;
-  options.load = options_->model.load();
-  options.packing = options_->packing.request();
-  run_reported(options_->run, {options.model, options.output}, interrupt,
-               [&](Monitor& monitor) { return pack(options, monitor); });
+void add_pack_command(CLI::App& app, const ConfigFile& config) {
+  CLI::App& command = *app.add_subcommand("pack", "Pack spheres in a closed model and write them as a table");
+  command.callback([job = std::make_shared<PackCommand>(command, config)] { job->run(); });
 }
 
 }  // namespace aerate::cli

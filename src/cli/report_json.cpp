@@ -1,8 +1,7 @@
-#include "cli/report_json.h"
-
 #include <optional>
 
 #include "cli/json_parts.h"
+#include "cli/reports.h"
 #include "core/roof.h"
 #include "printing/strength.h"
 

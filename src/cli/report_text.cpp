@@ -1,10 +1,9 @@
-#include "cli/report_text.h"
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
 
+#include "cli/reports.h"
 #include "pipeline/memory.h"
 
 namespace aerate::cli {
@@ -62,10 +61,6 @@ void add_stages(Lines& lines, const std::vector<StageCost>& stages) {
   lines.add("time", "{:.2f} s ({}), memory {} at most", total.seconds, parts, format_bytes(total.peak_bytes));
 }
 
-void add_device(Lines& lines, const DeviceUse& device) {
-  lines.add("packed on", "{}: {}", device.name, device.reason);
-}
-
 // Each limit with where it came from; those of the same origin together.
 void add_limits(Lines& lines, const ProcessChoice& choice) {
   lines.add("process", "{}: {}", choice.process.name, choice.process.title);
@@ -100,8 +95,17 @@ std::string radii(double smallest, double largest) {
   return from == to ? to + " mm" : from + " to " + to + " mm";
 }
 
-std::string gap_in_words(const Clearances& clearances) {
-  return clearances.gap ? fmt::format("{:.3f} mm", *clearances.gap) : std::string("none (one void)");
+void add_packing(Lines& lines, const char* label, std::size_t count, const std::string& radii,
+                 PackingMethod method, double density, const DeviceUse& device) {
+  lines.add(label, "{}, radius {}; {} packing, {:.2f} % of the model", count_of(count, "sphere", "spheres"),
+            radii, name_of(method), 100 * density);
+  lines.add("packed on", "{}: {}", device.name, device.reason);
+}
+
+void add_clearances(Lines& lines, const Clearances& clearances, const PackingLimits& limits) {
+  const std::string gap = clearances.gap ? fmt::format("{:.3f} mm", *clearances.gap) : "none (one void)";
+  lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", clearances.wall,
+            limits.wall, gap, limits.gap);
 }
 
 std::string margin_in_words(double margin) {
@@ -221,6 +225,14 @@ void add_material(Lines& lines, const HollowReport& report) {
   add_print(lines, report);
 }
 
+// A line for each of the first few.
+template <typename T, typename AddLine>
+void add_some(Lines& lines, const std::vector<T>& all, const AddLine& add_line) {
+  constexpr std::size_t kMost = 10;
+  for (std::size_t i = 0; i < std::min(kMost, all.size()); ++i) add_line(all[i], i == 0);
+  if (all.size() > kMost) lines.add("", "and {} more", all.size() - kMost);
+}
+
 }  // namespace
 
 std::string to_text(const HollowReport& report) {
@@ -228,14 +240,10 @@ std::string to_text(const HollowReport& report) {
   Lines lines;
   add_input(lines, report.input);
   add_limits(lines, report.process);
-  lines.add("voids", "{}, radius {}; {} packing, {:.2f} % of the model",
-            count_of(output.void_count, "sphere", "spheres"),
-            radii(output.smallest_radius, output.largest_radius), name_of(report.method),
-            100 * report.packing_density);
-  add_device(lines, report.packing_device);
+  add_packing(lines, "voids", output.void_count, radii(output.smallest_radius, output.largest_radius),
+              report.method, report.packing_density, report.packing_device);
   add_volume(lines, report);
-  lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", output.clearances.wall,
-            report.limits.wall, gap_in_words(output.clearances), report.limits.gap);
+  add_clearances(lines, output.clearances, report.limits);
   add_ceilings(lines, report);
   add_drainage(lines, report);
   if (!report.modifiers) add_balance(lines, report);
@@ -262,15 +270,9 @@ std::string to_text(const PackReport& report) {
   Lines lines;
   add_input(lines, report.input);
   add_limits(lines, report.process);
-  lines.add("spheres", "{}, radius {}; {} packing, {:.2f} % of the model",
-            count_of(spheres.size(), "sphere", "spheres"), radii(smallest->radius, largest->radius),
-            name_of(report.method), 100 * report.density);
-  add_device(lines, report.packing.device);
-  if (report.clearances) {
-    lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})",
-              report.clearances->wall, report.packing.limits.wall, gap_in_words(*report.clearances),
-              report.packing.limits.gap);
-  }
+  add_packing(lines, "spheres", spheres.size(), radii(smallest->radius, largest->radius), report.method,
+              report.density, report.packing.device);
+  if (report.clearances) add_clearances(lines, *report.clearances, report.packing.limits);
   const PackingStatistics& statistics = report.packing.statistics;
   lines.add("places",
             "{} tried; {} outside, {} near the surface, {} below the smallest radius, {} where parts "
@@ -302,24 +304,16 @@ std::string to_text(const InspectReport& report) {
   lines.add("triangles", "{} without area, {} doubled", grouped(inspection.degenerate_triangles),
             grouped(inspection.duplicate_triangles));
 
-  constexpr std::size_t kMostListed = 10;
-  for (std::size_t i = 0; i < std::min(kMostListed, inspection.boundary_loops.size()); ++i) {
-    const BoundaryLoop& loop = inspection.boundary_loops[i];
-    lines.add(i == 0 ? "holes" : "", "near {} mm, {:.3g} mm across, {}", point(loop.centre), loop.diameter,
+  add_some(lines, inspection.boundary_loops, [&](const BoundaryLoop& loop, bool is_first) {
+    lines.add(is_first ? "holes" : "", "near {} mm, {:.3g} mm across, {}", point(loop.centre), loop.diameter,
               count_of(loop.edge_count, "edge", "edges"));
-  }
-  if (inspection.boundary_loops.size() > kMostListed)
-    lines.add("", "and {} more", inspection.boundary_loops.size() - kMostListed);
-
+  });
   lines.add("shells", "{}, {} of them overlapping ({:.4g} mm3)", grouped(inspection.shells.size()),
             grouped(inspection.overlapping_shells), inspection.overlapped_volume);
-  for (std::size_t i = 0; i < std::min(kMostListed, inspection.shells.size()); ++i) {
-    const Shell& shell = inspection.shells[i];
+  add_some(lines, inspection.shells, [&](const Shell& shell, bool) {
     lines.add("", "{}, {:.4g} mm3, {}{}", count_of(shell.triangle_count, "triangle", "triangles"),
               shell.volume, size_of(shell.box), shell.closed ? "" : ", open");
-  }
-  if (inspection.shells.size() > kMostListed)
-    lines.add("", "and {} more", inspection.shells.size() - kMostListed);
+  });
 
   if (report.self_intersections) {
     lines.add("crossings", "{} that intersect",

@@ -1,31 +1,43 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
+#include <optional>
+#include <string>
 
-#include "cli/interrupt.h"
 #include "cli/model_options.h"
-#include "cli/report_json.h"
-#include "cli/report_output.h"
-#include "cli/report_text.h"
-#include "cli/slice_report.h"
-#include "cli/terminal.h"
-#include "pipeline/thread_limit.h"
+#include "cli/reports.h"
+#include "core/monitor.h"
 
 namespace aerate::cli {
 
-// Runs a job under the options that all commands share, and writes its report.
+// A report for people and for programs.
+struct RenderedReport {
+  std::string text;
+  std::string json;
+};
+
+// As `run_reported`, for a job whose report is rendered.
+void run_rendered(const RunOptions& options, std::initializer_list<std::filesystem::path> files,
+                  const std::function<RenderedReport(Monitor&)>& job, Verbosity notices);
+
+// Runs a job under the options that all commands share, and writes its report: as text to standard output, or
+// as JSON there, or as JSON to a file beside the text. That file is opened first, so that a place which cannot
+// be written to is found before the work.
 //   files: what the job reads and writes, which the report must not replace
 //   job: Report(Monitor&)
+//   notices: whether they are shown, if not as the options say
+// Throws UsageError if the JSON would replace one of the files, FailureError if it cannot be written, and what
+// the job throws.
 template <typename Job>
 void run_reported(const RunOptions& options, std::initializer_list<std::filesystem::path> files,
-                  InterruptGuard& interrupt, const Job& job) {
-  TerminalMonitor monitor(interrupt, options.verbosity());
-  ReportOutput output(options, files, monitor);
-  decltype(job(monitor)) report;
-  run_with_threads(options.threads, [&] { report = job(monitor); });
-  monitor.clear();
-  output.write([&] { return to_text(report); }, [&] { return to_json(report); });
+                  const Job& job, std::optional<Verbosity> notices = {}) {
+  const auto rendered = [&](Monitor& monitor) {
+    const auto report = job(monitor);
+    return RenderedReport{to_text(report), to_json(report)};
+  };
+  run_rendered(options, files, rendered, notices.value_or(options.verbosity()));
 }
 
 }  // namespace aerate::cli

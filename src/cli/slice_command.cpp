@@ -1,24 +1,21 @@
-#include "cli/slice_command.h"
-
 #include <CLI/CLI.hpp>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "cli/commands.h"
 #include "cli/form_options.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
 #include "pipeline/slice_model.h"
 
 namespace aerate::cli {
+namespace {
 
-struct SliceCommand::Options {
-  Options(CLI::App& app, const ConfigFile& config)
-      : command(*app.add_subcommand(
-            "slice", "Slice a model solid and hollowed with your settings, and write the better G-code")),
-        model(command),
-        form(command, config),
-        run(command) {
+struct SliceCommand {
+  SliceCommand(CLI::App& command, const ConfigFile& config)
+      : model(command), form(command, config), run_options(command) {
     command.add_option("-o,--output", output, "The G-code (required)")->required()->type_name("FILE");
     command
         .add_option(
@@ -55,27 +52,26 @@ struct SliceCommand::Options {
     return options;
   }
 
-  CLI::App& command;
+  void run() const {
+    const SliceModelOptions options = to_pipeline();
+    run_reported(run_options, {options.hollow.model, options.output},
+                 [&](Monitor& monitor) { return slice_model(options, monitor); });
+  }
+
   ModelOptions model;
   FormOptions form;
-  RunOptions run;
+  RunOptions run_options;
   std::string output;
   std::string slicer;
   std::vector<std::string> settings;
 };
 
-SliceCommand::SliceCommand(CLI::App& app, const ConfigFile& config)
-    : options_(std::make_unique<Options>(app, config)) {}
-SliceCommand::~SliceCommand() = default;
+}  // namespace
 
-bool SliceCommand::chosen() const {
-  return options_->command.parsed();
-}
-
-void SliceCommand::run(InterruptGuard& interrupt) const {
-  const SliceModelOptions options = options_->to_pipeline();
-  run_reported(options_->run, {options.hollow.model, options.output}, interrupt,
-               [&](Monitor& monitor) { return slice_model(options, monitor); });
+void add_slice_command(CLI::App& app, const ConfigFile& config) {
+  CLI::App& command = *app.add_subcommand(
+      "slice", "Slice a model solid and hollowed with your settings, and write the better G-code");
+  command.callback([job = std::make_shared<SliceCommand>(command, config)] { job->run(); });
 }
 
 }  // namespace aerate::cli

@@ -1,10 +1,9 @@
-#include "cli/slice_report.h"
-
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
 
 #include "cli/json_parts.h"
+#include "cli/reports.h"
 
 namespace aerate::cli {
 namespace {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/error.h"
+
+namespace CLI {
+class App;
+}
+
+namespace aerate::cli {
+
+class ConfigFile;
+
+// The commands of the program. Each adds itself with its options, and is run at the end of parsing if it was
+// named; what it throws comes out of the parser.
+void add_hollow_command(CLI::App& app, const ConfigFile& config);
+void add_pack_command(CLI::App& app, const ConfigFile& config);
+void add_inspect_command(CLI::App& app);
+void add_slice_command(CLI::App& app, const ConfigFile& config);
+void add_hook_command(CLI::App& app, const ConfigFile& config);
+
+// The same error in one line, with its hint, for `hook`: slicers show what a failing script wrote in a dialog.
+Error on_one_line(const Error& error);
+
+}  // namespace aerate::cli
