@@ -76,7 +76,7 @@ void require_stdout_written() {
 
 }  // namespace
 
-ExitCode run_command_line(int argc, const char* const* argv) {
+void run_command_line(int argc, const char* const* argv) {
   CLI::App app(
       "Packs disjoint spheres inside a printable model, removes them as internal voids, and writes a\n"
       "watertight model for any slicer.",
@@ -102,7 +102,6 @@ ExitCode run_command_line(int argc, const char* const* argv) {
     refuse(app, error);
   }
   require_stdout_written();
-  return ExitCode::done;
 }
 
 }  // namespace aerate::cli

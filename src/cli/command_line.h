@@ -1,11 +1,9 @@
 #pragma once
 
-#include "core/error.h"
-
 namespace aerate::cli {
 
 // Parses the arguments and runs the command they name. Results go to standard output, notices to standard
 // error. Throws aerate::Error for whatever keeps the command from being done, the command line included.
-ExitCode run_command_line(int argc, const char* const* argv);
+void run_command_line(int argc, const char* const* argv);
 
 }  // namespace aerate::cli

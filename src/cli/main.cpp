@@ -9,7 +9,8 @@ int main(int argc, char** argv) {
   using aerate::ExitCode;
   ExitCode code = ExitCode::failure;
   try {
-    code = aerate::cli::run_command_line(argc, argv);
+    aerate::cli::run_command_line(argc, argv);
+    code = ExitCode::done;
   } catch (const aerate::Error& error) {
     aerate::cli::print_error(error.what(), error.hint());
     code = error.code();
