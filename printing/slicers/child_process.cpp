@@ -44,39 +44,28 @@ std::vector<std::string> merged_environment(const std::vector<std::pair<std::str
   return variables;
 }
 
-// Where a child's standard streams go, and that it leads a process group.
-class SpawnSettings {
- public:
-  SpawnSettings(const fs::path& answers, const fs::path& printed) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, answers.c_str(), O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, printed.c_str(),
-                                     O_WRONLY | O_CREAT | O_APPEND | O_TRUNC, kOwnerOnly);
-    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
-    posix_spawnattr_init(&attributes_);
-    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP);
-    posix_spawnattr_setpgroup(&attributes_, 0);
-  }
-  ~SpawnSettings() {
-    posix_spawn_file_actions_destroy(&actions_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
-
-  pid_t spawn(std::vector<std::string> arguments, std::vector<std::string> variables) const {
-    pid_t pid = -1;
-    const int error = posix_spawnp(&pid, arguments.front().c_str(), &actions_, &attributes_,
-                                   pointers_to(arguments).data(), pointers_to(variables).data());
-    if (error != 0)
-      throw FailureError(arguments.front() + ": cannot be run: " + std::generic_category().message(error));
-    return pid;
-  }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-  posix_spawnattr_t attributes_{};
-};
+// Starts a program that leads a process group, with its standard streams from and to these files.
+pid_t spawn(std::vector<std::string> arguments, std::vector<std::string> variables, const fs::path& answers,
+            const fs::path& printed) {
+  const std::vector<char*> argv = pointers_to(arguments), envp = pointers_to(variables);
+  posix_spawn_file_actions_t streams;
+  posix_spawn_file_actions_init(&streams);
+  posix_spawn_file_actions_addopen(&streams, STDIN_FILENO, answers.c_str(), O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&streams, STDOUT_FILENO, printed.c_str(),
+                                   O_WRONLY | O_CREAT | O_APPEND | O_TRUNC, kOwnerOnly);
+  posix_spawn_file_actions_adddup2(&streams, STDOUT_FILENO, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  pid_t pid = -1;
+  const int error = posix_spawnp(&pid, argv[0], &streams, &attributes, argv.data(), envp.data());
+  posix_spawn_file_actions_destroy(&streams);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0)
+    throw FailureError(arguments.front() + ": cannot be run: " + std::generic_category().message(error));
+  return pid;
+}
 
 int wait_for(pid_t pid) {
   int status = 0;
@@ -142,8 +131,8 @@ PrivateFolder::~PrivateFolder() {
 ChildOutcome run_child(const ChildCommand& command, Monitor& monitor) {
   const fs::path answers = command.folder / "answers", printed = command.folder / "printed";
   std::ofstream(answers) << "y\n";
-  const SpawnSettings settings(answers, printed);
-  RunningChild child(settings.spawn(command.arguments, merged_environment(command.environment)), monitor);
+  RunningChild child(spawn(command.arguments, merged_environment(command.environment), answers, printed),
+                     monitor);
   ChildOutcome outcome;
   outcome.exit_code = child.wait();
   outcome.printed = read_text(printed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,8 @@ class PrivateFolder {
 };
 
 struct ChildCommand {
+  void add(std::initializer_list<std::string> more) { arguments.insert(arguments.end(), more); }
+
   std::vector<std::string> arguments;  // the program first, looked for on the path; no shell is involved
   std::vector<std::pair<std::string, std::string>> environment;  // added to this process's own
   std::filesystem::path folder;                                  // for what it prints; working folder stays

@@ -2,116 +2,30 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "printing/slicers/slicers.h"
+#include "printing/slicers/text_file.h"
+
 namespace aerate {
 namespace {
 
-// Calls f(line) for each line, without its line end; f returns false to stop.
-template <typename F>
-void for_each_line(std::string_view text, const F& f) {
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (!f(line)) return;
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (text.starts_with(' ')) text.remove_prefix(1);
-  while (text.ends_with(' ')) text.remove_suffix(1);
-  return text;
-}
-
-// The number at the front of `text`, which is taken off it.
-std::optional<double> take_number(std::string_view& text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
-  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return value;
-}
-
-// "1.5, 2.25" of several extruders.
-std::optional<double> take_sum(std::string_view text) {
-  std::optional<double> sum = take_number(text);
-  while (sum && trimmed(text).starts_with(',')) {
-    text = trimmed(text).substr(1);
-    const std::optional<double> next = take_number(text);
-    if (!next) return std::nullopt;
-    sum = *sum + *next;
-  }
-  return sum;
-}
-
-// "1d 2h 3m 4s"
-std::optional<double> take_duration(std::string_view text) {
-  double seconds = 0;
-  bool found = false;
-  while (const std::optional<double> number = take_number(text)) {
-    constexpr std::array<std::pair<char, double>, 4> kUnits{{{'d', 86400}, {'h', 3600}, {'m', 60}, {'s', 1}}};
-    const auto unit = std::find_if(kUnits.begin(), kUnits.end(),
-                                   [&](const auto& each) { return text.starts_with(each.first); });
-    if (unit == kUnits.end()) return std::nullopt;
-    seconds += *number * unit->second;
-    found = true;
-    text.remove_prefix(1);
-  }
-  return found ? std::optional(seconds) : std::nullopt;
-}
-
-// What stands after `label` and "=" or ":" in a comment line, if it begins with that label.
-std::optional<std::string_view> value_after(std::string_view line, std::string_view label) {
-  if (!line.starts_with(';')) return std::nullopt;
-  line = trimmed(line.substr(1));
+// What stands after `label` and "=" or ":" in a comment, if it begins with that label.
+std::optional<std::string_view> value_after(std::string_view comment, std::string_view label) {
+  std::string_view line = trimmed(comment.substr(1));
   if (!line.starts_with(label)) return std::nullopt;
   line = trimmed(line.substr(label.size()));
   if (!line.starts_with('=') && !line.starts_with(':')) return std::nullopt;
   return trimmed(line.substr(1));
 }
 
-void read_figure(std::string_view line, GcodeFigures& figures) {
-  if (const auto text = value_after(line, "filament used [mm]")) figures.filament_mm = take_sum(*text);
-  if (const auto text = value_after(line, "filament used [cm3]")) figures.filament_cm3 = take_sum(*text);
-  if (const auto text = value_after(line, "filament used [g]")) figures.filament_g = take_sum(*text);
-  if (const auto text = value_after(line, "filament cost")) figures.cost = take_sum(*text);
-  if (const auto text = value_after(line, "estimated printing time (normal mode)"))
-    figures.seconds = take_duration(*text);
-  if (const auto text = value_after(line, "filament used")) {  // Slic3r: "192.5mm (1.4cm3)"
-    std::string_view rest = *text;
-    figures.filament_mm = take_number(rest);
-    if (const std::size_t open = rest.find('('); open != std::string_view::npos) {
-      rest.remove_prefix(open + 1);
-      figures.filament_cm3 = take_number(rest);
-    }
+void read_figures(std::string_view comment, const SlicerProfile& slicer, GcodeFigures& figures) {
+  for (const FigureLine& line : slicer.figures) {
+    if (const auto text = value_after(comment, line.label)) figures.*line.figure = line.value_of(*text);
   }
-  if (const auto text = value_after(line, "Filament used")) {  // Cura: "0.228916m", of each extruder
-    constexpr double kMillimetresPerMetre = 1000;
-    double metres = 0;
-    std::string_view rest = *text;
-    while (const std::optional<double> length = take_number(rest)) {
-      metres += *length;
-      if (rest.starts_with('m')) rest.remove_prefix(1);
-      if (rest.starts_with(',')) rest.remove_prefix(1);
-    }
-    figures.filament_mm = metres * kMillimetresPerMetre;
-  }
-  if (line.starts_with(";TIME:")) {
-    std::string_view text = line.substr(std::string_view(";TIME:").size());
-    figures.seconds = take_number(text);
-  }
-}
-
-bool marks_layer(std::string_view line) {
-  return line == ";LAYER_CHANGE" || line == "; CHANGE_LAYER" || line.starts_with(";LAYER:");
+  if (slicer.begins_layer(comment)) ++figures.layers;
 }
 
 std::size_t count_heights(std::string_view gcode) {
@@ -249,6 +163,23 @@ std::string thumbnails_in(std::string_view gcode) {
   return pictures;
 }
 
+std::string_view without_blanks(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text.substr(0, text.find_last_not_of(" \t\r\n") + 1);
+}
+
+GcodeOrigin origin_in(std::string_view comment) {
+  for (const SlicerProfile& slicer : slicers()) {
+    for (const std::string_view mark : slicer.marks) {
+      const std::size_t at = comment.find(mark);
+      if (at == std::string_view::npos) continue;
+      const std::string_view name = comment.substr(at + mark.rfind(' ') + 1);
+      return {&slicer, std::string(trimmed(name.substr(0, name.find(" on "))))};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 bool is_binary_gcode(std::string_view gcode) {
@@ -257,52 +188,42 @@ bool is_binary_gcode(std::string_view gcode) {
 
 GcodeOrigin origin_of(std::string_view gcode) {
   constexpr std::size_t kLinesLookedAt = 40;
-  constexpr std::array<std::pair<std::string_view, GcodeGenerator>, 6> kNames{{
-      {"generated by PrusaSlicer", GcodeGenerator::prusa_slicer},
-      {"generated by SuperSlicer", GcodeGenerator::super_slicer},
-      {"generated by OrcaSlicer", GcodeGenerator::orca_slicer},
-      {"generated by Slic3r", GcodeGenerator::slic3r},
-      {"Generated with Cura", GcodeGenerator::cura},
-      {"BambuStudio", GcodeGenerator::bambu_studio},
-  }};
   GcodeOrigin origin;
   std::size_t seen = 0;
   for_each_line(gcode, [&](std::string_view line) {
-    if (!line.starts_with(';')) return ++seen < kLinesLookedAt;
-    for (const auto& [name, generator] : kNames) {
-      if (line.find(name) == std::string_view::npos) continue;
-      origin.generator = generator;
-      std::string_view text = trimmed(line.substr(1));
-      for (const std::string_view lead : {"generated by ", "Generated with "}) {
-        if (text.starts_with(lead)) text.remove_prefix(lead.size());
-      }
-      origin.name = text.substr(0, text.find(" on "));
-      return false;
-    }
-    return ++seen < kLinesLookedAt;
+    if (line.starts_with(';')) origin = origin_in(line);
+    return origin.slicer == nullptr && ++seen < kLinesLookedAt;
   });
   return origin;
 }
 
-GcodeFigures figures_of(std::string_view gcode) {
-  GcodeFigures figures;
+GcodeFigures figures_of(std::string_view gcode, const SlicerProfile& slicer, GcodeFigures known) {
+  GcodeFigures figures = known;
   for_each_line(gcode, [&](std::string_view line) {
-    if (line.starts_with(';')) {
-      read_figure(line, figures);
-      if (marks_layer(line)) ++figures.layers;
-    }
+    if (line.starts_with(';')) read_figures(line, slicer, figures);
     return true;
   });
   if (figures.layers == 0) figures.layers = count_heights(gcode);
   return figures;
 }
 
+std::optional<SettingLine> setting_in_line(std::string_view line) {
+  if (line.starts_with("; ")) line.remove_prefix(2);
+  const std::size_t equals = line.find('=');
+  if (equals == std::string_view::npos) return std::nullopt;
+  return SettingLine{without_blanks(line.substr(0, equals)), without_blanks(line.substr(equals + 1))};
+}
+
+bool names_post_processing(std::string_view line) {
+  const auto setting = setting_in_line(line);
+  return setting && setting->key == kPostProcess &&
+         setting->value.find_first_not_of(" \t\"") != std::string_view::npos;
+}
+
 std::optional<std::string> setting_in(std::string_view gcode, std::string_view key) {
   const auto found = find_setting(gcode, key);
   if (!found) return std::nullopt;
-  std::string_view line = gcode.substr(found->first, found->second);
-  while (line.ends_with('\n') || line.ends_with('\r')) line.remove_suffix(1);
-  return std::string(trimmed(line.substr(line.find('=') + 1)));
+  return std::string(setting_in_line(gcode.substr(found->first, found->second))->value);
 }
 
 std::string with_setting_of(std::string gcode, std::string_view original, std::string_view key) {

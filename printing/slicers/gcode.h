@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -18,11 +19,25 @@ struct GcodeFigures {
   std::size_t layers = 0;  // those with extrusion, where the slicer does not mark layers
 };
 
-enum class GcodeGenerator { prusa_slicer, super_slicer, orca_slicer, bambu_studio, slic3r, cura, unknown };
+struct NamedFigure {
+  const char* name;
+  std::optional<double> GcodeFigures::*figure;
+  int decimals;  // that are worth showing
+};
+inline constexpr std::array<NamedFigure, 5> kNamedFigures{{
+    {"filament_mm", &GcodeFigures::filament_mm, 2},
+    {"filament_cm3", &GcodeFigures::filament_cm3, 2},
+    {"filament_g", &GcodeFigures::filament_g, 2},
+    {"cost", &GcodeFigures::cost, 2},
+    {"seconds", &GcodeFigures::seconds, 0},
+}};
 
-// Whose G-code this is, by the first lines, and its name with the version as it stands there.
+struct SlicerProfile;
+
+// Whose G-code this is, by the first lines; null if that is not known. Its name with the version as it stands
+// there.
 struct GcodeOrigin {
-  GcodeGenerator generator = GcodeGenerator::unknown;
+  const SlicerProfile* slicer = nullptr;
   std::string name;
 };
 
@@ -31,8 +46,22 @@ bool is_binary_gcode(std::string_view gcode);
 
 GcodeOrigin origin_of(std::string_view gcode);
 
-// Reads the comments that PrusaSlicer and its relatives, Slic3r and Cura write.
-GcodeFigures figures_of(std::string_view gcode);
+// Reads the comments that this slicer writes; figures that they do not give stay as they are `known`.
+GcodeFigures figures_of(std::string_view gcode, const SlicerProfile& slicer, GcodeFigures known = {});
+
+// A line "key = value" of settings, or "; key = value" of those at the end of a G-code; nothing for another
+// kind of line.
+struct SettingLine {
+  std::string_view key;
+  std::string_view value;
+};
+std::optional<SettingLine> setting_in_line(std::string_view line);
+
+// The setting that names programs to be run on the G-code.
+inline constexpr const char* kPostProcess = "post_process";
+
+// True for a line of settings that names one.
+bool names_post_processing(std::string_view line);
 
 // The value of a setting in the block of settings at the end ("; key = value"), as it stands there.
 std::optional<std::string> setting_in(std::string_view gcode, std::string_view key);

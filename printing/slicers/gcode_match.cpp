@@ -11,8 +11,9 @@
 namespace aerate {
 namespace {
 
-constexpr double kCell = 1;     // mm: some line widths
-constexpr double kStep = 0.25;  // mm: lines are spread in pieces of at most this
+constexpr double kCell = 1;           // mm: some line widths
+constexpr double kStep = 0.25;        // mm: lines are spread in pieces of at most this
+constexpr double kLargestBed = 3000;  // mm
 
 struct Box {
   double x_min = std::numeric_limits<double>::infinity(), y_min = x_min;
@@ -115,7 +116,6 @@ double outline_distance(const std::vector<ExtrusionMove>& moves_a,
 
 PrintDifference compare_prints(const std::vector<ExtrusionMove>& a, const std::vector<ExtrusionMove>& b) {
   PrintDifference difference;
-  difference.outline = outline_distance(a, b);
   const Layers layers_a = layers_of(a), layers_b = layers_of(b);
   for (const auto& layer : layers_b) difference.layers_in_one += layers_a.contains(layer.first) ? 0u : 1u;
   double all = 0, displaced = 0;

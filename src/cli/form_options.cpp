@@ -1,7 +1,6 @@
 #include "cli/form_options.h"
 
 #include <fmt/format.h>
-#include <map>
 
 #include "cli/void_options.h"
 #include "core/error.h"
@@ -17,13 +16,17 @@ FormOptions::FormOptions(CLI::App& command, const ConfigFile& config) : packing_
       ->check(CLI::IsMember({"auto", "voids", "modifiers"}))
       ->type_name("FORM")
       ->capture_default_str();
-  add_modifier_infill(command, modifier_infill_percent);
-  command.add_option("--slicer-path", slicer_path, "The slicer's program (default: looked for on the PATH)")
+  add_modifier_infill(command, modifier_infill_percent_);
+  command.add_option("--slicer-path", slicer_path_, "The slicer's program (default: looked for on the PATH)")
       ->type_name("FILE");
 }
 
-HollowOptions FormOptions::hollow(const ModelOptions& model) const {
-  HollowOptions options;
+FormRequest FormOptions::request(const ModelOptions& model) const {
+  FormRequest request;
+  request.slicer_path = slicer_path_;
+  if (as_ != "auto") request.form = as_ == "voids" ? PrintForm::voids : PrintForm::modifiers;
+  request.modifier_infill_percent = modifier_infill_percent_;
+  HollowOptions& options = request.hollow;
   options.model = model.path;
   options.load = model.load();
   options.packing = packing_.request();
@@ -34,13 +37,7 @@ HollowOptions FormOptions::hollow(const ModelOptions& model) const {
         "make a model with voids that drain by 'aerate hollow', and open it in the slicer of your printer");
   options.tolerance = tolerance_;
   require_tolerance_for(options.packing.limits(), tolerance_);
-  return options;
-}
-
-FormChoice FormOptions::choice() const {
-  return std::map<std::string, FormChoice>{
-      {"auto", FormChoice::automatic}, {"voids", FormChoice::voids}, {"modifiers", FormChoice::modifiers}}
-      .at(as_);
+  return request;
 }
 
 }  // namespace aerate::cli

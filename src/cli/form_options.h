@@ -13,17 +13,15 @@ namespace aerate::cli {
 // --modifier-infill, --slicer-path.
 struct FormOptions {
   FormOptions(CLI::App& command, const ConfigFile& config);
-  // Throws UsageError for options that contradict each other. The output is left open.
-  HollowOptions hollow(const ModelOptions& model) const;
-  FormChoice choice() const;
-
-  double modifier_infill_percent = 0;
-  std::string slicer_path;
+  // Throws UsageError for options that contradict each other.
+  FormRequest request(const ModelOptions& model) const;
 
  private:
   PackingCommandOptions packing_;
   double tolerance_ = HollowOptions{}.tolerance;
   std::string as_ = "auto";
+  double modifier_infill_percent_ = 0;
+  std::string slicer_path_;
 };
 
 }  // namespace aerate::cli

@@ -1,9 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/ranges.h>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/drainage_options.h"
@@ -16,9 +19,21 @@
 #include "files/formats.h"
 #include "pipeline/hollow.h"
 #include "printing/materials.h"
+#include "printing/slicers/slicers.h"
 
 namespace aerate::cli {
 namespace {
+
+// As the command line and its help name a slicer's modifiers.
+std::vector<std::string> flavor_of(const SlicerProfile& slicer) {
+  return slicer.modifiers ? std::vector{slicer.modifiers->flavor} : std::vector<std::string>{};
+}
+
+std::vector<std::string> described_flavor(const SlicerProfile& slicer) {
+  if (!slicer.modifiers) return {};
+  return {fmt::format("{} ({}{})", slicer.modifiers->flavor, fmt::join(slicer.family, ", "),
+                      slicer.untested ? "; untested" : "")};
+}
 
 struct HollowCommand {
   HollowCommand(CLI::App& command, const ConfigFile& config)
@@ -37,11 +52,8 @@ struct HollowCommand {
         ->check(CLI::IsMember({"voids", "modifiers"}))
         ->type_name("FORM")
         ->capture_default_str();
-    command
-        .add_option("--flavor", flavor,
-                    "Whose modifiers: prusa (PrusaSlicer, SuperSlicer) or orca (OrcaSlicer, Bambu Studio; "
-                    "untested)")
-        ->check(CLI::IsMember({"prusa", "orca"}))
+    command.add_option("--flavor", flavor, "Whose modifiers: " + listed(of_slicers(described_flavor), "or"))
+        ->check(CLI::IsMember(of_slicers(flavor_of)))
         ->type_name("FLAVOR")
         ->capture_default_str();
     add_modifier_infill(command, modifier_infill);
@@ -99,7 +111,7 @@ struct HollowCommand {
             {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}
             .at(surface);
     if (void_form == "modifiers")
-      options.modifiers = {flavor == "orca" ? ThreeMfFlavor::orca : ThreeMfFlavor::prusa, modifier_infill};
+      options.modifiers = {&*std::ranges::find(slicers(), std::vector{flavor}, flavor_of), modifier_infill};
     // Modifiers leave the model solid: nothing is trapped in them.
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
@@ -129,7 +141,7 @@ struct HollowCommand {
   RunOptions run_options;
   std::string output;
   std::string void_form = "voids";
-  std::string flavor = "prusa";
+  std::string flavor = of_slicers(flavor_of).front();
   double modifier_infill = ModifierOptions{}.infill_percent;
   std::string spheres;
   double tolerance = HollowOptions{}.tolerance;

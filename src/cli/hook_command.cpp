@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -42,16 +43,20 @@ struct HookCommand {
     command.add_option("FILE", gcode, "The G-code; slicers append it to the script's line")->type_name("");
     command
         .add_option("--print-setup", setup,
-                    "Print the line to paste into a slicer's post-processing scripts: prusa-slicer, "
-                    "super-slicer or orca-slicer (both untested; the latter for annotation only)")
-        ->check(CLI::IsMember({"prusa-slicer", "super-slicer", "orca-slicer"}))
+                    "Print the line to paste into a slicer's post-processing scripts: " +
+                        listed(of_slicers(&SlicerProfile::calls_hook), "or") +
+                        " (both untested; the latter for annotation only)")
+        ->check(CLI::IsMember(of_slicers(&SlicerProfile::calls_hook)))
         ->type_name("SLICER");
   }
 
   std::string setup_line() const {
     std::string line = quoted(own_path()) + " hook";
-    // Re-slicing from the settings in a G-code is not possible with OrcaSlicer's command line.
-    if (setup == "orca-slicer") return line;
+    const auto calls = [&](const SlicerProfile& slicer) {
+      return std::ranges::count(slicer.calls_hook, setup) > 0;
+    };
+    // One that cannot slice again takes no model.
+    if (!std::ranges::find_if(slicers(), calls)->repeats_gcode) return line;
     const std::string file = model.path.empty() ? std::string("/path/to/model.stl")
                                                 : std::filesystem::absolute(model.path).string();
     return line + " --model " + quoted(file);
@@ -65,13 +70,10 @@ struct HookCommand {
     if (gcode.empty()) throw UsageError("FILE is required", "see 'aerate hook --help'");
     HookOptions options;
     options.gcode = gcode;
-    options.slicer_path = form.slicer_path;
-    options.form = form.choice();
-    options.modifier_infill_percent = form.modifier_infill_percent;
-    options.hollow = form.hollow(model);
+    options.request = form.request(model);
     // Slicers show what a script writes to standard error as an error: notices go into the report alone.
     run_reported(
-        run_options, {options.gcode, options.hollow.model},
+        run_options, {options.gcode, options.request.hollow.model},
         [&](Monitor& monitor) { return run_hook(options, monitor); }, Verbosity::quiet);
   }
 

@@ -12,6 +12,7 @@
 #include "files/formats.h"
 #include "packing/device_choice.h"
 #include "packing/methods.h"
+#include "printing/slicers/slicers.h"
 
 namespace aerate::cli {
 namespace {
@@ -64,6 +65,7 @@ void ModelOptions::add_size_options(CLI::App& command) {
 
 LoadOptions ModelOptions::load() const {
   LoadOptions options;
+  options.volume_lists = volume_lists();
   if (!unit_.empty()) options.unit = units().at(unit_);
   options.scale = scale_;
   return options;

@@ -3,6 +3,7 @@
 #include "cli/json_parts.h"
 #include "cli/reports.h"
 #include "core/roof.h"
+#include "printing/slicers/slicers.h"
 #include "printing/strength.h"
 
 namespace aerate::cli {
@@ -196,7 +197,7 @@ Json modifiers_of(const HollowReport& report) {
   if (!report.modifiers) return nullptr;
   const OutputFacts& output = report.output;
   const MaterialUse use = material_use(report);
-  return {{"flavor", name_of(report.modifiers->flavor)},
+  return {{"flavor", report.modifiers->slicer->modifiers->flavor},
           {"infill_percent", report.modifiers->infill_percent},
           {"volume_mm3", output.volume_removed},
           {"volume_percent", 100 * output.volume_removed / output.volume_before},

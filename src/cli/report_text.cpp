@@ -5,6 +5,7 @@
 
 #include "cli/reports.h"
 #include "pipeline/memory.h"
+#include "printing/slicers/slicers.h"
 
 namespace aerate::cli {
 namespace {
@@ -198,9 +199,9 @@ void add_volume(Lines& lines, const HollowReport& report) {
     lines.add("modifiers", "{:.1f} of {:.1f} mm3 ({:.2f} %) with {:g} % infill instead of the print's own{}",
               output.volume_removed, output.volume_before, percent, report.modifiers->infill_percent,
               estimated);
-    lines.add("", "for {}; nothing is removed, and no walls are printed round them",
-              report.modifiers->flavor == ThreeMfFlavor::prusa ? "PrusaSlicer and SuperSlicer"
-                                                               : "OrcaSlicer and Bambu Studio (untested)");
+    const SlicerProfile& slicer = *report.modifiers->slicer;
+    lines.add("", "for {}{}; nothing is removed, and no walls are printed round them",
+              listed(slicer.family, "and"), slicer.untested ? " (untested)" : "");
     return;
   }
   lines.add("removed", "{:.1f} of {:.1f} mm3 ({:.2f} %), {:.1f} mm3 left{}", output.volume_removed,

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
-#include <map>
+#include <algorithm>
+#include <fmt/ranges.h>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,24 +14,30 @@
 namespace aerate::cli {
 namespace {
 
+// As the command line and its help name a slicer.
+std::vector<std::string> name_of(const SlicerProfile& slicer) {
+  return {slicer.name};
+}
+
+std::vector<std::string> described(const SlicerProfile& slicer) {
+  if (slicer.untested) return {slicer.name + " (untested)"};
+  if (slicer.runs_also.empty()) return {slicer.name};
+  return {fmt::format("{} (also {}, by --slicer-path)", slicer.name, slicer.runs_also)};
+}
+
 struct SliceCommand {
   SliceCommand(CLI::App& command, const ConfigFile& config)
       : model(command), form(command, config), run_options(command) {
     command.add_option("-o,--output", output, "The G-code (required)")->required()->type_name("FILE");
-    command
-        .add_option(
-            "--slicer", slicer,
-            "prusa-slicer (also SuperSlicer, by --slicer-path), orca-slicer (untested), cura-engine or "
-            "slic3r (required)")
+    command.add_option("--slicer", slicer, listed(of_slicers(described), "or") + " (required)")
         ->required()
-        ->check(CLI::IsMember({"prusa-slicer", "orca-slicer", "cura-engine", "slic3r"}))
+        ->check(CLI::IsMember(of_slicers(name_of)))
         ->type_name("NAME");
     // Of the slicer: the program's own options file has to be named before the command.
     command
-        .add_option(
-            "--config", settings,
-            "The slicer's settings, once for each file: .ini or G-code (PrusaSlicer, Slic3r); JSON of "
-            "machine, process and filament (OrcaSlicer); .def.json and lines name=value (CuraEngine)")
+        .add_option("--config", settings,
+                    fmt::format("The slicer's settings, once for each file: {}",
+                                fmt::join(of_slicers(&SlicerProfile::settings), "; ")))
         ->type_name("FILE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -39,22 +46,15 @@ struct SliceCommand {
   SliceModelOptions to_pipeline() const {
     SliceModelOptions options;
     options.output = output;
-    options.slicer = std::map<std::string, SlicerKind>{{"prusa-slicer", SlicerKind::prusa_slicer},
-                                                       {"orca-slicer", SlicerKind::orca_slicer},
-                                                       {"cura-engine", SlicerKind::cura_engine},
-                                                       {"slic3r", SlicerKind::slic3r}}
-                         .at(slicer);
-    options.slicer_path = form.slicer_path;
+    options.slicer = &*std::ranges::find(slicers(), slicer, &SlicerProfile::name);
     options.settings.files.assign(settings.begin(), settings.end());
-    options.form = form.choice();
-    options.modifier_infill_percent = form.modifier_infill_percent;
-    options.hollow = form.hollow(model);
+    options.request = form.request(model);
     return options;
   }
 
   void run() const {
     const SliceModelOptions options = to_pipeline();
-    run_reported(run_options, {options.hollow.model, options.output},
+    run_reported(run_options, {options.request.hollow.model, options.output},
                  [&](Monitor& monitor) { return slice_model(options, monitor); });
   }
 

@@ -47,32 +47,27 @@ std::string voids_line(const SlicedForm& form) {
                      100 * facts.volume_removed / facts.volume_before);
 }
 
-double slicer_seconds(const std::vector<SlicedForm>& forms) {
+double slicer_seconds(const FormsReport& report) {
   double sum = 0;
-  for (const SlicedForm& form : forms) sum += form.slicer_seconds;
+  for (const SlicedForm& form : report.forms) sum += form.slicer_seconds;
   return sum;
 }
 
-std::string time_line(const std::vector<SlicedForm>& forms, const std::vector<StageCost>& stages) {
-  const double slicing = slicer_seconds(forms);
+std::string time_line(const FormsReport& report) {
+  const double slicing = slicer_seconds(report);
   return fmt::format("{:<12}{:.2f} s in the slicer, {:.2f} s beside it\n", "time", slicing,
-                     total_of(stages).seconds - slicing);
+                     total_of(report.stages).seconds - slicing);
 }
 
 Json json_of(const std::vector<SlicedForm>& forms) {
   Json list = Json::array();
   for (const SlicedForm& form : forms) {
-    const GcodeFigures& figures = form.figures;
-    Json entry = {{"form", name_of(form.form)},
-                  {"filament_mm", or_null(figures.filament_mm)},
-                  {"filament_cm3", or_null(figures.filament_cm3)},
-                  {"filament_g", or_null(figures.filament_g)},
-                  {"cost", or_null(figures.cost)},
-                  {"seconds", or_null(figures.seconds)},
-                  {"layers", figures.layers}};
+    Json entry = {{"form", name_of(form.form)}};
+    for (const NamedFigure& named : kNamedFigures) entry[named.name] = or_null(form.figures.*named.figure);
+    entry["layers"] = form.figures.layers;
     entry["filament_saved_percent"] = form.form == PrintForm::solid
                                           ? Json(nullptr)
-                                          : Json(100 * filament_saved(forms.front().figures, figures));
+                                          : Json(100 * filament_saved(forms.front().figures, form.figures));
     entry["slicer_run_seconds"] = form.slicer_seconds;
     entry["voids"] = form.hollow ? Json(form.hollow->output.void_count) : Json(nullptr);
     entry["void_volume_mm3"] = form.hollow ? Json(form.hollow->output.volume_removed) : Json(nullptr);
@@ -81,36 +76,39 @@ Json json_of(const std::vector<SlicedForm>& forms) {
   return list;
 }
 
+std::string closed(Json& json, const FormsReport& report) {
+  json["seconds_in_slicer"] = slicer_seconds(report);
+  add_closing(json, report.stages, report.notices);
+  return dump(json);
+}
+
 }  // namespace
 
 std::string to_text(const SliceReport& report) {
-  const SlicedForm& chosen = report.forms[report.chosen];
-  const char* untested = report.slicer.kind == SlicerKind::orca_slicer ? ", untested" : "";
+  const SlicerProfile& slicer = *report.slicer.profile;
   return fmt::format("{:<12}{}\n{:<12}{} ({}){}\n", "model", report.model.filename().string(), "slicer",
-                     name_of(report.slicer.kind), report.slicer.program.string(), untested) +
+                     slicer.name, report.slicer.program.string(), slicer.untested ? ", untested" : "") +
          table(report.forms) + voids_line(report.forms.back()) +
-         fmt::format("{:<12}{}: {}\n", "output", report.output.filename().string(), name_of(chosen.form)) +
-         time_line(report.forms, report.stages);
+         fmt::format("{:<12}{}: {}\n", "output", report.output.filename().string(),
+                     name_of(report.best().form)) +
+         time_line(report);
 }
 
 std::string to_text(const HookReport& report) {
-  const SlicedForm& chosen = report.forms[report.chosen];
   return fmt::format("{:<12}{} ({})\n", "G-code", report.gcode.filename().string(), report.origin.name) +
-         table(report.forms) + voids_line(chosen) +
-         fmt::format("{:<12}{}{}\n", "result", report.chosen > 0 ? name_of(chosen.form) : "unchanged",
+         table(report.forms) + voids_line(report.best()) +
+         fmt::format("{:<12}{}{}\n", "result", report.result(),
                      report.remark.empty() ? "" : ": " + report.remark) +
-         time_line(report.forms, report.stages);
+         time_line(report);
 }
 
 std::string to_json(const SliceReport& report) {
   Json json = report_header("slice");
   json["model"] = report.model.string();
-  json["slicer"] = {{"name", name_of(report.slicer.kind)}, {"program", report.slicer.program.string()}};
+  json["slicer"] = {{"name", report.slicer.profile->name}, {"program", report.slicer.program.string()}};
   json["forms"] = json_of(report.forms);
-  json["output"] = {{"path", report.output.string()}, {"form", name_of(report.forms[report.chosen].form)}};
-  json["seconds_in_slicer"] = slicer_seconds(report.forms);
-  add_closing(json, report.stages, report.notices);
-  return dump(json);
+  json["output"] = {{"path", report.output.string()}, {"form", name_of(report.best().form)}};
+  return closed(json, report);
 }
 
 std::string to_json(const HookReport& report) {
@@ -118,11 +116,9 @@ std::string to_json(const HookReport& report) {
   json["gcode"] = report.gcode.string();
   json["generator"] = report.origin.name;
   json["forms"] = json_of(report.forms);
-  json["result"] = report.chosen > 0 ? name_of(report.forms[report.chosen].form) : "unchanged";
+  json["result"] = report.result();
   json["remark"] = report.remark;
-  json["seconds_in_slicer"] = slicer_seconds(report.forms);
-  add_closing(json, report.stages, report.notices);
-  return dump(json);
+  return closed(json, report);
 }
 
 }  // namespace aerate::cli

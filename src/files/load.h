@@ -4,8 +4,13 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/mesh.h"
+
+namespace pugi {
+class xml_node;
+}
 
 namespace aerate {
 
@@ -13,15 +18,22 @@ enum class LengthUnit { millimetre, centimetre, metre, inch };
 
 double millimetres_per(LengthUnit unit);
 
-// What is done with a slicer's 3MF project that has modifiers, negative volumes or supports painted as
-// volumes: in the package they look like bodies of the model.
-enum class OtherVolumes { refuse, take_as_bodies };
+// A file of a 3MF package in which a slicer says what the volumes are: <config>, in it <object>s, in them a
+// node for each volume, with its name as <metadata key="name" value=""/>.
+struct VolumeList {
+  const char* entry;
+  const char* node;
+  // What a volume is that is not part of the model, though in the package it looks like a body of it (a
+  // modifier, a negative volume, supports painted as volumes); empty for a part.
+  std::string (*other_kind)(const pugi::xml_node& volume);
+};
 
 struct LoadOptions {
   // For formats that carry no unit; 3MF and glTF files have their own and refuse another.
   std::optional<LengthUnit> unit;
   double scale = 1.0;  // on top of the unit; finite and positive
-  OtherVolumes other_volumes = OtherVolumes::refuse;
+  // A package that has one of these with a volume that is not part of the model is refused.
+  std::vector<VolumeList> volume_lists = {};
 };
 
 struct LoadedModel {
@@ -35,8 +47,8 @@ struct LoadedModel {
 // out; components and transforms are applied. Coordinates are converted to millimetres in double and rounded
 // once; with unit and scale 1 they keep the bits of a binary file. (assimp reads decimal text to within one
 // unit in the last place.) Throws InputError (missing, a directory, empty, truncated, wrong triangle count,
-// NaN or infinite coordinates, unknown or garbled content, no triangles, a slicer's project with modifiers),
-// UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
+// NaN or infinite coordinates, unknown or garbled content, no triangles, a volume that is not part of the
+// model), UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace aerate

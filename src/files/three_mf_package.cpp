@@ -155,35 +155,22 @@ void check_3mf(InputFile& file) {
   if (!relations.empty()) replace_entry(file, kRelations, relations);
 }
 
-// Slicers keep in files of their own which volumes of a project are modifiers, negative or for supports; see
-// three_mf.h.
-void require_model_parts_only(const InputFile& file) {
+void require_model_parts_only(const InputFile& file, const std::vector<VolumeList>& lists) {
   const Archive archive = open_archive(file);
-  const auto refuse = [&](const char* kind, const char* volume) {
-    throw InputError(
-        fmt::format("{}: a slicer's project with a volume that is not part of the model ({} '{}')", file.name,
-                    kind, volume),
-        "take such volumes out, or export the model alone (in PrusaSlicer: File, Export, Export Plate as "
-        "STL)");
-  };
-  const auto value = [](pugi::xml_node node, const char* key) {
-    return node.find_child_by_attribute("metadata", "key", key).attribute("value").as_string();
-  };
-  const pugi::xml_document prusa = document_in(archive.get(), "Metadata/Slic3r_PE_model.config", file);
-  for (const pugi::xml_node object : prusa.child("config").children("object")) {
-    for (const pugi::xml_node volume : object.children("volume")) {
-      const std::string_view type = value(volume, "volume_type");
-      if (!type.empty() && type != "ModelPart") refuse(type.data(), value(volume, "name"));
-      // Before version 2.3 there was no type.
-      if (type.empty() && std::string_view(value(volume, "modifier")) == "1")
-        refuse("modifier", value(volume, "name"));
-    }
-  }
-  const pugi::xml_document orca = document_in(archive.get(), "Metadata/model_settings.config", file);
-  for (const pugi::xml_node object : orca.child("config").children("object")) {
-    for (const pugi::xml_node part : object.children("part")) {
-      const std::string_view type = part.attribute("subtype").as_string("normal_part");
-      if (type != "normal_part") refuse(type.data(), value(part, "name"));
+  for (const VolumeList& list : lists) {
+    const pugi::xml_document document = document_in(archive.get(), list.entry, file);
+    for (const pugi::xml_node object : document.child("config").children("object")) {
+      for (const pugi::xml_node volume : object.children(list.node)) {
+        const std::string kind = list.other_kind(volume);
+        if (kind.empty()) continue;
+        throw InputError(
+            fmt::format(
+                "{}: a slicer's project with a volume that is not part of the model ({} '{}')", file.name,
+                kind,
+                volume.find_child_by_attribute("metadata", "key", "name").attribute("value").as_string()),
+            "take such volumes out, or export the model alone (in PrusaSlicer: File, Export, Export Plate as "
+            "STL)");
+      }
     }
   }
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "files/input_file.h"
+#include "files/load.h"
 
 namespace aerate {
 
@@ -8,7 +11,7 @@ namespace aerate {
 // checksums of what is needed of it. Takes out what the package says to have and has not. Throws InputError.
 void check_3mf(InputFile& file);
 
-// Throws InputError for a slicer's project with volumes that are not part of the model.
-void require_model_parts_only(const InputFile& file);
+// Throws InputError for a package that has one of these lists with a volume that is not part of the model.
+void require_model_parts_only(const InputFile& file, const std::vector<VolumeList>& lists);
 
 }  // namespace aerate

@@ -162,7 +162,7 @@ class Reader3mf {
 
 LoadedModel read_3mf(InputFile& file, const LoadOptions& options) {
   check_3mf(file);
-  if (options.other_volumes == OtherVolumes::refuse) require_model_parts_only(file);
+  require_model_parts_only(file, options.volume_lists);
   const Reader3mf reader(file);
   return reader.build(millimetres_per_unit(options, reader.unit(), file.name));
 }
@@ -172,7 +172,7 @@ void write_3mf(const Mesh& mesh, OutputFile& file) {
 }
 
 Mesh read_written_3mf(OwnFile& file) {
-  return load_model(file.path(), {.unit = {}, .other_volumes = OtherVolumes::take_as_bodies}).mesh;
+  return load_model(file.path()).mesh;
 }
 
 }  // namespace

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPostProcess = "post_process";
-
 // The block of comments begins and ends with these.
 constexpr std::string_view kBegin = "; aerate = begin\n", kEnd = "; aerate = end\n";
 
@@ -32,9 +30,9 @@ std::string read_gcode(const fs::path& path) {
     throw InputError(path.string() + ": is binary G-code, which a script cannot edit",
                      "switch binary G-code off in the slicer's printer settings");
   }
-  if (origin_of(text).generator == GcodeGenerator::unknown || !extrudes(text)) {
+  if (origin_of(text).slicer == nullptr || !extrudes(text)) {
     throw InputError(path.string() + ": is not G-code of a slicer that is known here",
-                     "PrusaSlicer, SuperSlicer, OrcaSlicer, Slic3r and Cura are");
+                     listed(of_slicers(&SlicerProfile::family), "and") + " are");
   }
   if (text.find("\n" + std::string(kBegin)) != std::string::npos)
     throw InputError(path.string() + ": has been through aerate already", "slice again");
@@ -43,12 +41,12 @@ std::string read_gcode(const fs::path& path) {
 
 // The slicer that can repeat what it did from its own G-code.
 Slicer slicer_of(const GcodeOrigin& origin, const HookOptions& options) {
-  if (origin.generator != GcodeGenerator::prusa_slicer && origin.generator != GcodeGenerator::super_slicer) {
+  if (!origin.slicer->repeats_gcode) {
     throw UsageError(fmt::format("{}: {} cannot be run again from the settings in its G-code",
                                  options.gcode.string(), origin.name),
                      "hollow the model before slicing, or leave out --model to annotate only");
   }
-  return find_slicer(SlicerKind::prusa_slicer, options.slicer_path);
+  return find_slicer(*origin.slicer, options.request.slicer_path);
 }
 
 // A hollowed model prints within the same outline.
@@ -68,7 +66,7 @@ void require_match(const std::vector<ExtrusionMove>& original, const SlicedForm&
   const std::string slicer_name = origin_of(gcode).name;
   throw InputError(
       fmt::format("{}: sliced with the settings of {} it does not give the same G-code ({})",
-                  options.hollow.model.string(), options.gcode.filename().string(), *difference),
+                  options.request.hollow.model.string(), options.gcode.filename().string(), *difference),
       slicer_name != origin.name
           ? fmt::format("the G-code is by {}, and {} is {}: give the program that made it as --slicer-path",
                         origin.name, slicer.program.string(), slicer_name)
@@ -88,31 +86,21 @@ bool is_project(const fs::path& model) {
   return ::strcasecmp(model.extension().c_str(), ".3mf") == 0;
 }
 
-std::string figure(const char* name, const std::optional<double>& before, const std::optional<double>& after,
-                   int decimals) {
-  if (!after) return {};
-  return fmt::format("; aerate_{} = {:.{}f}{}\n", name, *after, decimals,
-                     before ? fmt::format(" (solid {:.{}f})", *before, decimals) : "");
-}
-
 std::string comments_for(const HookReport& report) {
-  const SlicedForm& chosen = report.forms[report.chosen];
-  const GcodeFigures& now = chosen.figures;
-  const bool changed = report.chosen > 0;
-  const auto before = [&](std::optional<double> GcodeFigures::*what) {
-    return changed ? report.forms.front().figures.*what : std::nullopt;
-  };
+  const SlicedForm& best = report.best();
   std::string text(kBegin);
-  text += fmt::format("; aerate_result = {}\n", changed ? name_of(chosen.form) : "unchanged");
+  text += fmt::format("; aerate_result = {}\n", report.result());
   if (!report.remark.empty()) text += fmt::format("; aerate_remark = {}\n", report.remark);
-  text += figure("filament_mm", before(&GcodeFigures::filament_mm), now.filament_mm, 2);
-  text += figure("filament_cm3", before(&GcodeFigures::filament_cm3), now.filament_cm3, 2);
-  text += figure("filament_g", before(&GcodeFigures::filament_g), now.filament_g, 2);
-  text += figure("cost", before(&GcodeFigures::cost), now.cost, 2);
-  text += figure("seconds", before(&GcodeFigures::seconds), now.seconds, 0);
-  text += fmt::format("; aerate_layers = {}\n", now.layers);
-  if (changed) {
-    const OutputFacts& facts = chosen.hollow->output;
+  for (const auto& [name, figure, decimals] : kNamedFigures) {
+    const std::optional<double> before = report.forms.front().figures.*figure, now = best.figures.*figure;
+    if (!now) continue;
+    text += fmt::format("; aerate_{} = {:.{}f}", name, *now, decimals);
+    if (report.chosen > 0 && before) text += fmt::format(" (solid {:.{}f})", *before, decimals);
+    text += '\n';
+  }
+  text += fmt::format("; aerate_layers = {}\n", best.figures.layers);
+  if (best.hollow) {
+    const OutputFacts& facts = best.hollow->output;
     text +=
         fmt::format("; aerate_voids = {}, radius {:.3f} to {:.3f} mm, {:.1f} mm3, wall {:.3f} mm at least\n",
                     facts.void_count, facts.smallest_radius, facts.largest_radius, facts.volume_removed,
@@ -126,16 +114,12 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
                  HookReport& report, JobLog& log) {
   const Slicer slicer = slicer_of(report.origin, options);
   require_settings_in(original, options);
-  const std::vector<PrintForm> hollowed = forms_to_try(options.form, slicer.kind);
+  const FormRequest& request = options.request;
+  const std::vector<PrintForm> hollowed = forms_to_try(request.form, *slicer.profile);
   // A slicer tells G-code by its ending, and the file that a script gets may have another.
   const fs::path settings = scratch / "settings.gcode";
   write_bytes(original, settings);
-  const FormJob job{.slicer = slicer,
-                    .settings = {{settings}},
-                    .hollow = options.hollow,
-                    .modifier_infill_percent = options.modifier_infill_percent,
-                    .keep_place = is_project(options.hollow.model),
-                    .scratch = scratch};
+  const FormJob job{request, slicer, {{settings}}, scratch, is_project(request.hollow.model)};
   const std::vector<ExtrusionMove> moves = extrusion_moves(original);
   const SlicedForm solid = slice_solid(job, log);
   log.stage("compare");
@@ -151,13 +135,13 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
     report.remark = error.what();
     return;
   }
-  report.chosen = choose_form(report.forms, options.form);
+  report.chosen = choose_form(report.forms, request.form);
   if (report.chosen == 0) report.remark = "no hollowed form takes less filament";
 }
 
 std::string new_content(const std::string& original, const HookReport& report) {
   if (report.chosen == 0) return with_comments(original, comments_for(report));
-  std::string gcode = with_setting_of(read_text(report.forms[report.chosen].gcode), original, kPostProcess);
+  std::string gcode = with_setting_of(read_text(report.best().gcode), original, kPostProcess);
   return with_comments(with_thumbnails_of(std::move(gcode), original), comments_for(report));
 }
 
@@ -175,13 +159,13 @@ HookReport run_hook(const HookOptions& options, Monitor& monitor) {
   const std::string original = read_gcode(options.gcode);
   report.origin = origin_of(original);
   report.forms.push_back({.form = PrintForm::solid,
-                          .figures = figures_of(original),
+                          .figures = figures_of(original, *report.origin.slicer),
                           .gcode = options.gcode,
                           .hollow = std::nullopt});
   AnnouncedFile pending(options.gcode, log);
   fs::permissions(pending.file().path(), fs::status(options.gcode).permissions());
   const PrivateFolder scratch(log);
-  if (options.hollow.model.empty()) {
+  if (options.request.hollow.model.empty()) {
     report.remark = "no model was given";
   } else {
     slice_forms(original, options, scratch.path(), report, log);

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "core/monitor.h"
 #include "pipeline/print_forms.h"
@@ -10,21 +9,17 @@
 namespace aerate {
 
 struct HookOptions {
-  std::filesystem::path gcode;        // as the slicer wrote it; replaced
-  std::filesystem::path slicer_path;  // the slicer that wrote it is looked for if empty
-  FormChoice form = FormChoice::automatic;
-  double modifier_infill_percent = 0;
-  HollowOptions hollow;  // without a model the G-code is annotated only
+  std::filesystem::path gcode;  // as the slicer wrote it; replaced
+  FormRequest request;          // without a model the G-code is annotated only
 };
 
-struct HookReport {
+// The first form is what the file held; it is alone if nothing could be removed.
+struct HookReport : FormsReport {
   std::filesystem::path gcode;
   GcodeOrigin origin;
-  std::vector<SlicedForm> forms;  // the first is what the file held; alone if nothing could be removed
-  std::size_t chosen = 0;
   std::string remark;  // why the moves stayed as they were, if they did
-  std::vector<StageCost> stages;
-  std::vector<std::string> notices;
+
+  const char* result() const { return chosen > 0 ? name_of(best().form) : "unchanged"; }
 };
 
 // A slicer's post-processing script. Re-slices the solid model with the settings that the G-code embeds; only

@@ -9,13 +9,14 @@
 #include "core/drainage.h"
 #include "core/packing.h"
 #include "files/load.h"
-#include "files/three_mf.h"
 #include "packing/methods.h"
 #include "pipeline/process_choice.h"
 #include "printing/materials.h"
 #include "printing/print_settings.h"
 
 namespace aerate {
+
+struct SlicerProfile;
 
 // Which surface the result has outside.
 enum class SurfaceMode {
@@ -52,7 +53,7 @@ enum class HeavierPrint { refuse, allow };
 
 // Voids as parts of a 3MF where the slicer changes the infill and prints no walls, instead of as shells.
 struct ModifierOptions {
-  ThreeMfFlavor flavor = ThreeMfFlavor::prusa;
+  const SlicerProfile* slicer = nullptr;  // whose: one that has a format for them
   double infill_percent = 0;
 };
 

@@ -23,13 +23,14 @@ std::filesystem::path folder_of(PrintForm form, const FormJob& job) {
 // STL as every slicer reads it, whatever the model came as.
 void write_solid_model(const FormJob& job, const std::filesystem::path& path, Monitor& monitor) {
   monitor.stage("load");
-  write_mesh(load_model(job.hollow.model, job.hollow.load).mesh, path, MeshFormat::stl);
+  const HollowOptions& options = job.request.hollow;
+  write_mesh(load_model(options.model, options.load).mesh, path, MeshFormat::stl);
 }
 
 // The model's file in the form's folder.
 std::filesystem::path model_file(PrintForm form, const FormJob& job) {
   const std::string ending = form == PrintForm::modifiers ? ".3mf" : ".stl";
-  return folder_of(form, job) / (job.hollow.model.stem().string() + ending);
+  return folder_of(form, job) / (job.request.hollow.model.stem().string() + ending);
 }
 
 SlicedForm slice_file(PrintForm form, std::filesystem::path model, const FormJob& job, Monitor& monitor) {
@@ -65,16 +66,13 @@ const char* name_of(PrintForm form) {
   return "unknown";
 }
 
-std::vector<PrintForm> forms_to_try(FormChoice choice, SlicerKind slicer) {
-  if (choice == FormChoice::voids) return {PrintForm::voids};
-  if (choice == FormChoice::modifiers) {
-    if (!takes_modifiers(slicer)) {
-      throw UsageError(fmt::format("{} reads no modifiers", name_of(slicer)),
-                       "use --as voids, or --as auto, which leaves them out");
-    }
-    return {PrintForm::modifiers};
+std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const SlicerProfile& slicer) {
+  if (asked == PrintForm::modifiers && !slicer.modifiers) {
+    throw UsageError(fmt::format("{} reads no modifiers", slicer.name),
+                     "use --as voids, or --as auto, which leaves them out");
   }
-  if (takes_modifiers(slicer)) return {PrintForm::voids, PrintForm::modifiers};
+  if (asked) return {*asked};
+  if (slicer.modifiers) return {PrintForm::voids, PrintForm::modifiers};
   return {PrintForm::voids};
 }
 
@@ -86,15 +84,13 @@ SlicedForm slice_solid(const FormJob& job, Monitor& monitor) {
 
 std::vector<SlicedForm> slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
                                        Monitor& monitor) {
-  const HollowedModel hollowed = carve_model(job.hollow, monitor);
+  const HollowedModel hollowed = carve_model(job.request.hollow, monitor);
   std::vector<SlicedForm> all;
   for (const PrintForm form : forms) {
-    HollowOptions options = job.hollow;
+    HollowOptions options = job.request.hollow;
     options.output = model_file(form, job);
-    if (form == PrintForm::modifiers) {
-      const bool is_orca = job.slicer.kind == SlicerKind::orca_slicer;
-      options.modifiers = {is_orca ? ThreeMfFlavor::orca : ThreeMfFlavor::prusa, job.modifier_infill_percent};
-    }
+    if (form == PrintForm::modifiers)
+      options.modifiers = {job.slicer.profile, job.request.modifier_infill_percent};
     HollowReport report = write_hollowed(hollowed, options, monitor);
     all.push_back(slice_file(form, options.output, job, monitor));
     all.back().hollow = std::move(report);
@@ -111,8 +107,8 @@ double filament_saved(const GcodeFigures& solid, const GcodeFigures& other) {
   throw FailureError("the slicer's G-code does not say how much filament it takes");
 }
 
-std::size_t choose_form(const std::vector<SlicedForm>& forms, FormChoice choice) {
-  if (choice != FormChoice::automatic) return 1;
+std::size_t choose_form(const std::vector<SlicedForm>& forms, std::optional<PrintForm> asked) {
+  if (asked) return 1;
   std::size_t best = 0;
   double most_saved = 0;
   for (std::size_t i = 1; i < forms.size(); ++i) {

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/monitor.h"
 #include "pipeline/options.h"
 #include "pipeline/report.h"
-#include "printing/slicers/slicer.h"
+#include "printing/slicers/slicers.h"
 
 namespace aerate {
 
@@ -20,11 +22,13 @@ enum class PrintForm {
 
 const char* name_of(PrintForm form);
 
-// Which of the hollowed forms may be used.
-enum class FormChoice {
-  automatic,  // the one that takes the least filament by the slicer's figures; solid if none takes less
-  voids,
-  modifiers,
+// How a model is to be sliced.
+struct FormRequest {
+  std::filesystem::path slicer_path;  // the slicer is looked for if empty
+  // If not given, the form that takes the least filament by the slicer's figures; solid if none takes less.
+  std::optional<PrintForm> form;
+  double modifier_infill_percent = 0;
+  HollowOptions hollow;  // with the model; `output` and `modifiers` are set for each form
 };
 
 // A form as the slicer printed it.
@@ -36,18 +40,27 @@ struct SlicedForm {
   double slicer_seconds = 0;           // wall-clock time of the slicer's run
 };
 
+// What the reports of all that slices have.
+struct FormsReport {
+  std::vector<SlicedForm> forms;  // the first is solid
+  std::size_t chosen = 0;
+  std::vector<StageCost> stages;
+  std::vector<std::string> notices;
+
+  const SlicedForm& best() const { return forms[chosen]; }
+};
+
 // A model to be sliced in several forms under the same settings.
 struct FormJob {
+  const FormRequest& request;
   Slicer slicer;
   SlicerSettings settings;
-  HollowOptions hollow;  // `output` and `modifiers` are set for each form
-  double modifier_infill_percent = 0;
-  bool keep_place = false;  // see SliceJob
   std::filesystem::path scratch;
+  bool keep_place = false;  // see SliceJob
 };
 
 // The forms to try. Throws UsageError for modifiers with a slicer that takes none.
-std::vector<PrintForm> forms_to_try(FormChoice choice, SlicerKind slicer);
+std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const SlicerProfile& slicer);
 
 // Slices the model as it is. Throws what load_model() and slice() throw.
 SlicedForm slice_solid(const FormJob& job, Monitor& monitor);
@@ -62,6 +75,6 @@ std::vector<SlicedForm> slice_hollowed(const std::vector<PrintForm>& forms, cons
 double filament_saved(const GcodeFigures& solid, const GcodeFigures& other);
 
 // Index of the form to use: forms[0] is solid, the others are those tried.
-std::size_t choose_form(const std::vector<SlicedForm>& forms, FormChoice choice);
+std::size_t choose_form(const std::vector<SlicedForm>& forms, std::optional<PrintForm> asked);
 
 }  // namespace aerate

@@ -32,11 +32,11 @@ void require_no_models_name(const std::filesystem::path& output) {
 // Hollowing is quick beside slicing, and says sooner that nothing can be removed; then, if the form is left
 // open, the solid model is all there is.
 std::vector<SlicedForm> slice_what_can_be_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
-                                                   FormChoice choice, JobLog& log) {
+                                                   JobLog& log) {
   try {
     return slice_hollowed(forms, job, log);
   } catch (const NothingToRemoveError& error) {
-    if (choice != FormChoice::automatic) throw;
+    if (job.request.form) throw;
     log.notice(std::string(error.what()) + "; the solid model is what was written");
     return {};
   }
@@ -45,36 +45,32 @@ std::vector<SlicedForm> slice_what_can_be_hollowed(const std::vector<PrintForm>&
 }  // namespace
 
 SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
+  const FormRequest& request = options.request;
   require_no_models_name(options.output);
-  require_other_file(options.hollow.model, options.output);
+  require_other_file(request.hollow.model, options.output);
   SliceReport report;
-  report.model = options.hollow.model;
+  report.model = request.hollow.model;
   report.output = options.output;
-  report.choice = options.form;
-  report.slicer = find_slicer(options.slicer, options.slicer_path);
+  report.slicer = find_slicer(*options.slicer, request.slicer_path);
   require_settings(options.settings);
   require_other_than_settings(options);
-  const std::vector<PrintForm> hollowed = forms_to_try(options.form, options.slicer);
+  const std::vector<PrintForm> hollowed = forms_to_try(request.form, *options.slicer);
 
   JobLog log(monitor);
   if (have_post_processing(options.settings))
     log.notice("the post-processing programs of the settings are not run");
   AnnouncedFile pending(options.output, log);
   const PrivateFolder scratch(log);
-  const FormJob job{.slicer = report.slicer,
-                    .settings = options.settings,
-                    .hollow = options.hollow,
-                    .modifier_infill_percent = options.modifier_infill_percent,
-                    .scratch = scratch.path()};
-  report.forms = slice_what_can_be_hollowed(hollowed, job, options.form, log);
+  const FormJob job{request, report.slicer, options.settings, scratch.path()};
+  report.forms = slice_what_can_be_hollowed(hollowed, job, log);
   report.forms.insert(report.forms.begin(), slice_solid(job, log));
   if (report.forms.size() > 1) {
-    report.chosen = choose_form(report.forms, options.form);
+    report.chosen = choose_form(report.forms, request.form);
     if (report.chosen == 0)
       log.notice("no hollowed form takes less filament than the solid model, so that is what was written");
   }
 
-  pending.commit_text(read_text(report.forms[report.chosen].gcode));
+  pending.commit_text(read_text(report.best().gcode));
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "core/monitor.h"
 #include "pipeline/print_forms.h"
@@ -11,23 +9,15 @@ namespace aerate {
 
 struct SliceModelOptions {
   std::filesystem::path output;  // .gcode
-  SlicerKind slicer = SlicerKind::prusa_slicer;
-  std::filesystem::path slicer_path;  // looked for if empty
+  const SlicerProfile* slicer = nullptr;
   SlicerSettings settings;
-  FormChoice form = FormChoice::automatic;
-  double modifier_infill_percent = 0;
-  HollowOptions hollow;  // with the model
+  FormRequest request;
 };
 
-struct SliceReport {
+struct SliceReport : FormsReport {
   std::filesystem::path model;
   Slicer slicer;
-  FormChoice choice = FormChoice::automatic;
-  std::vector<SlicedForm> forms;  // the first is solid
-  std::size_t chosen = 0;
   std::filesystem::path output;
-  std::vector<StageCost> stages;
-  std::vector<std::string> notices;
 };
 
 // Slices a model solid and hollowed with the user's own settings, and makes the better G-code the output.

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "files/three_mf.h"
+#include "printing/slicers/slicers.h"
 
 namespace aerate {
 
@@ -22,9 +23,9 @@ void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat&
     write_mesh(solid.mesh, file, *format.mesh);
     return;
   }
-  write_bytes(to_3mf(with_void_shells_turned(solid.mesh, solid),
-                     modifier_parts(solid, format.modifiers->infill_percent), format.modifiers->flavor),
-              file);
+  const std::vector<ObjectPart> parts = modifier_parts(solid, format.modifiers->infill_percent);
+  const ThreeMfExtras extras = format.modifiers->slicer->modifiers->extras(parts.front(), parts.back());
+  write_bytes(to_3mf(with_void_shells_turned(solid.mesh, solid), extras), file);
 }
 
 Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
@@ -32,7 +33,7 @@ Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, cons
   Mesh mesh = read_back(path, *format.mesh, monitor);
   if (!format.modifiers) return mesh;
   if (mesh.triangles.size() != solid.mesh.triangles.size() ||
-      read_3mf_parts(path, format.modifiers->flavor) !=
+      format.modifiers->slicer->modifiers->read(path) !=
           modifier_parts(solid, format.modifiers->infill_percent)) {
     throw FailureError(
         "the result failed its check, so it was not kept: its parts are not the model and its voids",

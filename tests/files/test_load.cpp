@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "files/load.h"
+#include "printing/slicers/slicers.h"
 #include "tests/support/binary_stl.h"
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"
@@ -77,7 +78,8 @@ class Load : public testing::Test {
   }
   std::string input_error(const std::string& name, std::string_view content) const {
     const std::filesystem::path path = write(name, content);
-    const std::string message = message_of<InputError>([&] { load_model(path); });
+    const std::string message =
+        message_of<InputError>([&] { load_model(path, {.unit = {}, .volume_lists = volume_lists()}); });
     EXPECT_TRUE(contains(message, path.string()));
     return message;
   }

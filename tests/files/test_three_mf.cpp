@@ -13,7 +13,6 @@
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/zip.h"
 
 namespace aerate::test {
 namespace {
@@ -34,17 +33,6 @@ void expect_same_corners(const Mesh& read, const Mesh& written) {
       ASSERT_TRUE(a == b) << "triangle " << i;
     }
   }
-}
-
-// A box with one void: the void's shell is inward, as in every solid.
-Solid box_with_a_void() {
-  const Mesh outer = make_box({0, 0, 0}, {20, 20, 20});
-  const Mesh shell = turned_inside_out(make_box({8, 8, 8}, {12, 12, 12}));
-  Solid solid;
-  solid.mesh = join(outer, shell);
-  solid.parts = {{PartKind::outer, 0, outer.triangles.size()}};
-  solid.close_part(PartKind::void_surface);
-  return solid;
 }
 
 TEST_F(ThreeMf, KeepsTheBitsOfCoordinatesOfAnySize) {
@@ -78,61 +66,34 @@ TEST_F(ThreeMf, SaysThatItsUnitIsTheMillimetre) {
   EXPECT_TRUE(contains(message_of<UsageError>([&] { load_model(path, inches); }), "millimeter"));
 }
 
-TEST_F(ThreeMf, BytesDependOnTheMeshAlone) {
-  const Solid solid = box_with_a_void();
-  for (const ThreeMfFlavor flavor : {ThreeMfFlavor::prusa, ThreeMfFlavor::orca}) {
-    const std::string once = to_3mf(solid.mesh, modifier_parts(solid, 0), flavor);
-    setenv("TZ", "Asia/Tokyo", 1);
-    tzset();
-    const std::string again = to_3mf(solid.mesh, modifier_parts(solid, 0), flavor);
-    unsetenv("TZ");
-    tzset();
-    EXPECT_EQ(once, again);
-  }
+TEST_F(ThreeMf, ComponentsAreTheMeshInOrder) {
+  const Mesh boxes = join(make_box({0, 0, 0}, {20, 20, 20}), make_box({8, 8, 8}, {12, 12, 12}));
+  ThreeMfExtras extras;
+  extras.component_triangles = {12, 12};
+  const LoadedModel read = load_model(file(to_3mf(boxes, extras)));
+  EXPECT_EQ(read.part_count, 2u);
+  expect_same_corners(read.mesh, boxes);
 }
 
-TEST_F(ThreeMf, NamesTheModelAndItsModifiersForBothFlavors) {
-  const Solid solid = box_with_a_void();
-  const Mesh bodies = with_void_shells_turned(solid.mesh, solid);
-  for (const ThreeMfFlavor flavor : {ThreeMfFlavor::prusa, ThreeMfFlavor::orca}) {
-    const auto parts = modifier_parts(solid, 12.5);
-    const auto path = file(to_3mf(bodies, parts, flavor));
-    EXPECT_EQ(read_3mf_parts(path, flavor), parts) << name_of(flavor);
-    expect_same_corners(load_model(path, {.unit = {}, .other_volumes = OtherVolumes::take_as_bodies}).mesh,
-                        bodies);
-    // As a model it would print the voids.
-    EXPECT_TRUE(contains(message_of<InputError>([&] { load_model(path); }), "not part of the model"));
-  }
+TEST_F(ThreeMf, BytesDependOnWhatIsWrittenAlone) {
+  const Mesh mesh = make_box({0, 0, 0}, {1, 2, 3});
+  const std::string once = to_3mf(mesh, {{}, "a program", {{"Metadata/a", "b"}}});
+  setenv("TZ", "Asia/Tokyo", 1);
+  tzset();
+  const std::string again = to_3mf(mesh, {{}, "a program", {{"Metadata/a", "b"}}});
+  unsetenv("TZ");
+  tzset();
+  EXPECT_EQ(once, again);
 }
 
-TEST_F(ThreeMf, ModifiersAreBodiesOfTheirOwn) {
-  const Solid solid = box_with_a_void();
-  const Mesh bodies = with_void_shells_turned(solid.mesh, solid);
-  EXPECT_DOUBLE_EQ(signed_volume(solid.mesh), 8000 - 64);
-  EXPECT_DOUBLE_EQ(signed_volume(bodies), 8000 + 64);
-  EXPECT_EQ(with_void_shells_turned(bodies, solid).triangles, solid.mesh.triangles);
-}
-
-TEST_F(ThreeMf, NoticesPartsThatAreNotThoseMeant) {
-  const Solid solid = box_with_a_void();
-  auto parts = modifier_parts(solid, 0);
-  parts[1].first_triangle += 1;
-  parts[1].triangle_count -= 1;
-  const auto path = file(to_3mf(solid.mesh, parts, ThreeMfFlavor::prusa));
-  EXPECT_NE(read_3mf_parts(path, ThreeMfFlavor::prusa), modifier_parts(solid, 0));
-  EXPECT_NE(modifier_parts(solid, 0), modifier_parts(solid, 10));
-}
-
-TEST_F(ThreeMf, RefusesPackagesThatAreNotItsOwn) {
-  EXPECT_TRUE(
-      contains(message_of<FailureError>([&] { read_3mf_parts(file("no archive"), ThreeMfFlavor::prusa); }),
-               "not a zip archive"));
-  const auto plain = file(to_3mf(make_box({0, 0, 0}, {1, 1, 1})));
-  EXPECT_TRUE(contains(message_of<FailureError>([&] { read_3mf_parts(plain, ThreeMfFlavor::prusa); }),
-                       "Slic3r_PE_model.config is missing"));
-  const auto garbled = file(make_zip({{"Metadata/Slic3r_PE_model.config", "<config><object>"}}));
-  EXPECT_TRUE(contains(message_of<FailureError>([&] { read_3mf_parts(garbled, ThreeMfFlavor::prusa); }),
-                       "Slic3r_PE_model.config: "));
+TEST_F(ThreeMf, GivesEntriesBack) {
+  const auto path = file(to_3mf(make_box({0, 0, 0}, {1, 2, 3}), {{}, "a program", {{"Metadata/a", "b"}}}));
+  EXPECT_EQ(read_3mf_entry(path, "Metadata/a"), "b");
+  EXPECT_TRUE(contains(read_3mf_entry(path, kThreeMfModel), "<metadata name=\"Application\">a program<"));
+  EXPECT_TRUE(contains(message_of<FailureError>([&] { read_3mf_entry(path, "Metadata/c"); }),
+                       "model.3mf: is not the 3MF package that was written: Metadata/c is missing"));
+  EXPECT_TRUE(contains(message_of<FailureError>([&] { read_3mf_entry(file("no archive"), "a"); }),
+                       "not a zip archive"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "printing/slicers/gcode.h"
+#include "printing/slicers/slicers.h"
 #include "tests/support/files.h"
 #include "tests/support/process.h"
 
@@ -22,7 +22,7 @@ inline GcodeFigures slice_with_prusa(const std::filesystem::path& model, const s
     ADD_FAILURE() << "the slicer failed on " << model << ": " << result.out << result.err;
     return {};
   }
-  return figures_of(read_bytes(gcode));
+  return figures_of(read_bytes(gcode), prusa_slicer());
 }
 
 }  // namespace aerate::test

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "printing/slicers/gcode.h"
+#include "printing/slicers/slicers.h"
 #include "tests/slicer/fake_slicer.h"
 #include "tests/support/binary_stl.h"
 #include "tests/support/caught.h"
@@ -87,7 +87,7 @@ TEST_F(Hook, ReplacesTheGcodeByTheBestForm) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   const std::string after = read_bytes(gcode());
-  EXPECT_DOUBLE_EQ(figures_of(after).filament_mm.value(), 800);
+  EXPECT_DOUBLE_EQ(figures_of(after, prusa_slicer()).filament_mm.value(), 800);
   EXPECT_TRUE(contains(after, "; aerate_result = modifiers\n"));
   EXPECT_TRUE(contains(after, "; aerate_filament_mm = 800.00 (solid 1000.00)\n"));
   // The first line stays the first, and the settings end the file.

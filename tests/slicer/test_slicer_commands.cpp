@@ -11,7 +11,7 @@
 #include "core/mesh.h"
 #include "files/formats.h"
 #include "files/load.h"
-#include "printing/slicers/slicer.h"
+#include "printing/slicers/slicers.h"
 #include "tests/slicer/fake_slicer.h"
 #include "tests/slicer/slicing.h"
 #include "tests/support/caught.h"
@@ -82,7 +82,7 @@ TEST_F(Slicing, PicksTheFormThatTakesTheLeastByPrusaSlicersFigures) {
   }
   const std::string written = read_bytes(output());
   const double least = std::min({filament["solid"], filament["voids"], filament["modifiers"]});
-  EXPECT_DOUBLE_EQ(figures_of(written).filament_mm.value(), least);
+  EXPECT_DOUBLE_EQ(figures_of(written, prusa_slicer()).filament_mm.value(), least);
   EXPECT_DOUBLE_EQ(filament.at(report["output"]["form"]), least);
   EXPECT_LT(least, filament["solid"]);
   EXPECT_EQ(setting_in(written, "fill_density").value(), "40%");
@@ -99,7 +99,8 @@ TEST_F(Slicing, WritesTheSolidPrintWhenNothingTakesLess) {
   ASSERT_EQ(report["forms"].size(), 2u);
   EXPECT_EQ(report["output"]["form"], "solid");
   EXPECT_GT(report["forms"][1]["filament_mm"], report["forms"][0]["filament_mm"]);
-  EXPECT_EQ(figures_of(read_bytes(output())).filament_mm.value(), report["forms"][0]["filament_mm"]);
+  EXPECT_EQ(figures_of(read_bytes(output()), slic3r()).filament_mm.value(),
+            report["forms"][0]["filament_mm"]);
 }
 
 TEST_F(Slicing, Slic3rPrintsVoids) {
@@ -324,10 +325,11 @@ TEST_F(Slicing, CuraEngineLeavesTheVoidsLayerByLayer) {
   const fs::path settings =
       folder_.write("settings.txt", "layer_height=0.2\ninfill_pattern=lines\ninfill_line_distance=0.4\n");
   Monitor monitor;
+  const SlicerProfile cura = cura_engine();
   std::map<std::string, std::map<int, double>> fed;  // by height, hundredths of a millimetre
   for (const fs::path& file : {solid, hollow}) {
     const fs::path gcode = folder_.path() / (file.stem().string() + ".gcode");
-    const Slicer slicer = find_slicer(SlicerKind::cura_engine, {});
+    const Slicer slicer = find_slicer(cura, {});
     const GcodeFigures figures = aerate::slice(
         slicer,
         {.model = file, .gcode = gcode, .settings = {{cura_definition(), settings}}, .scratch = outputs()},
@@ -370,7 +372,8 @@ TEST_F(Slicing, CuraEngineByTheCommand) {
   const std::string gcode = read_bytes(output());
   EXPECT_TRUE(gcode.starts_with(";FLAVOR:Marlin\n"));
   EXPECT_FALSE(contains(gcode, ";TIME:6666"));  // the header with the true figures is in
-  EXPECT_DOUBLE_EQ(figures_of(gcode).seconds.value(), report["forms"][1]["seconds"].get<double>());
+  EXPECT_DOUBLE_EQ(figures_of(gcode, cura_engine()).seconds.value(),
+                   report["forms"][1]["seconds"].get<double>());
 }
 
 }  // namespace

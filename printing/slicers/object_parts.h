@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/solid.h"
+
+namespace pugi {
+class xml_document;
+class xml_node;
+}  // namespace pugi
+
+// The parts of an object, of which slicers keep a list beside the model in a 3MF package: <config>, in it
+// <object>, in it a node for each part, and in that <metadata key="" value=""/>. (Source: the slicers' own
+// readers.)
+namespace aerate {
+
+// Consecutive triangles of a mesh that a slicer treats as one part.
+struct ObjectPart {
+  std::string name;
+  std::size_t first_triangle = 0;
+  std::size_t triangle_count = 0;
+  bool is_modifier = false;  // not a body, but where the print has this infill instead of its own
+  std::string infill;        // "12.5%"; empty for a body
+
+  std::size_t end() const { return first_triangle + triangle_count; }
+  bool operator==(const ObjectPart&) const = default;
+};
+
+// A solid's mesh with its void shells turned outward, as bodies of their own, and back.
+Mesh with_void_shells_turned(Mesh mesh, const Solid& solid);
+
+// The parts of such a mesh: the model and one modifier that holds all voids (their shells are disjoint).
+std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent);
+
+std::string metadata_of(const pugi::xml_node& node, const char* key);
+
+// An entry of a package that was written here. Throws FailureError if it is not there or no XML.
+pugi::xml_document read_document(const std::filesystem::path& package, const char* entry);
+
+}  // namespace aerate

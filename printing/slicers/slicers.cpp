@@ -1,0 +1,123 @@
+#include "printing/slicers/slicers.h"
+
+#include <cstdlib>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+#include "core/error.h"
+#include "printing/slicers/text_file.h"
+
+namespace aerate {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_program(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && ::access(path.c_str(), X_OK) == 0;
+}
+
+std::vector<fs::path> search_path() {
+  std::vector<fs::path> folders;
+  const char* variable = std::getenv("PATH");
+  std::istringstream stream(variable != nullptr ? variable : "");
+  for (std::string folder; std::getline(stream, folder, ':');)
+    folders.emplace_back(folder.empty() ? "." : folder);
+  return folders;
+}
+
+[[noreturn]] void fail(const Slicer& slicer, const SliceJob& job, const std::string& why,
+                       std::string printed) {
+  while (!printed.empty() && printed.back() == '\n') printed.pop_back();
+  throw FailureError(fmt::format("{} {} on {}", slicer.profile->name, why, job.model.filename().string()) +
+                     (printed.empty() ? "; it printed nothing" : "; it printed:\n" + printed));
+}
+
+}  // namespace
+
+std::vector<VolumeList> volume_lists() {
+  std::vector<VolumeList> lists;
+  for (const SlicerProfile& slicer : slicers()) {
+    if (slicer.modifiers) lists.push_back(slicer.modifiers->volumes);
+  }
+  return lists;
+}
+
+std::vector<std::string> of_slicers(
+    const std::function<std::vector<std::string>(const SlicerProfile&)>& texts) {
+  std::vector<std::string> all;
+  for (const SlicerProfile& slicer : slicers()) {
+    for (std::string& text : texts(slicer)) all.push_back(std::move(text));
+  }
+  return all;
+}
+
+std::string listed(const std::vector<std::string>& texts, const std::string& last) {
+  std::string list;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (i > 0) list += i + 1 < texts.size() ? ", " : " " + last + " ";
+    list += texts[i];
+  }
+  return list;
+}
+
+Slicer find_slicer(const SlicerProfile& profile, const fs::path& path) {
+  if (!path.empty()) {
+    if (!is_program(path))
+      throw UsageError(path.string() + ": is not a program that can be run",
+                       "give the slicer's program as --slicer-path");
+    return {&profile, fs::absolute(path)};
+  }
+  for (const std::string& name : profile.programs) {
+    for (const fs::path& folder : search_path()) {
+      if (is_program(folder / name)) return {&profile, folder / name};
+    }
+  }
+  throw UsageError(
+      fmt::format("{} is not on the search path (as {})", profile.name, fmt::join(profile.programs, " ")),
+      "install it, or give its program as --slicer-path");
+}
+
+void require_settings(const SlicerSettings& settings) {
+  for (const fs::path& file : settings.files) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || !std::ifstream(file))
+      throw InputError(file.string() + ": no settings can be read from it",
+                       "give the slicer's own settings file");
+  }
+}
+
+bool have_post_processing(const SlicerSettings& settings) {
+  bool found = false;
+  for (const fs::path& file : settings.files) {
+    for_each_line(read_text(file), [&](std::string_view line) {
+      found = found || names_post_processing(line);
+      return !found;
+    });
+  }
+  return found;
+}
+
+GcodeFigures slice(const Slicer& slicer, const SliceJob& job, Monitor& monitor) {
+  ChildCommand command = slicer.profile->command(slicer.program, job);
+  command.environment.emplace_back(kSlicedByVariable, "1");
+  const ChildOutcome outcome = run_child(command, monitor);
+  if (outcome.exit_code != 0)
+    fail(slicer, job, "failed with status " + std::to_string(outcome.exit_code), outcome.printed);
+
+  GcodeFigures known;
+  if (slicer.profile->collect != nullptr) known = slicer.profile->collect(job, outcome.printed);
+  std::error_code error;
+  if (!fs::is_regular_file(job.gcode, error) || fs::file_size(job.gcode, error) == 0)
+    fail(slicer, job, "wrote no G-code", outcome.printed);
+  const std::string text = read_text(job.gcode);
+  if (is_binary_gcode(text))
+    fail(slicer, job, "wrote binary G-code, which cannot be read here: set binary_gcode = 0",
+         outcome.printed);
+  if (!extrudes(text)) fail(slicer, job, "wrote G-code that extrudes nothing", outcome.printed);
+  return figures_of(text, *slicer.profile, known);
+}
+
+}  // namespace aerate

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/monitor.h"
+#include "files/load.h"
+#include "files/three_mf.h"
+#include "printing/slicers/child_process.h"
+#include "printing/slicers/gcode.h"
+#include "printing/slicers/object_parts.h"
+
+namespace aerate {
+
+// The user's own settings, in whatever files the slicer takes them from (SlicerProfile::settings).
+struct SlicerSettings {
+  std::vector<std::filesystem::path> files;
+};
+
+struct SliceJob {
+  std::filesystem::path model;  // STL or 3MF, mm
+  std::filesystem::path gcode;  // to be written
+  SlicerSettings settings;
+  bool keep_place = false;        // x and y as in the model instead of the middle of the bed
+  std::filesystem::path scratch;  // an existing folder for the slicer's files
+};
+
+// A figure that a G-code gives in a comment "; label = text" or "; label: text".
+struct FigureLine {
+  std::string_view label;
+  std::optional<double> GcodeFigures::*figure;
+  std::optional<double> (*value_of)(std::string_view text);
+};
+
+// How a slicer keeps the parts of an object, modifiers among them, in a 3MF package.
+struct ModifierFormat {
+  std::string flavor;  // as on the command line
+  VolumeList volumes;
+  // For `to_3mf` of a mesh that these parts cover in order.
+  ThreeMfExtras (*extras)(const ObjectPart& model, const ObjectPart& voids);
+  // The parts that such a package names. Throws FailureError for one that is not as it was written.
+  std::vector<ObjectPart> (*read)(const std::filesystem::path& package);
+};
+
+// All that is known of a slicer.
+struct SlicerProfile {
+  std::string name;                 // as on the command line
+  std::vector<std::string> family;  // whose G-code and packages are like this slicer's, its own among them
+  std::string runs_also;            // one of them that may stand in its place
+  bool untested = false;
+
+  std::vector<std::string> programs;  // its names on the search path
+  std::vector<std::string> settings;  // kinds of files with settings, in words; each kind in one row
+  ChildCommand (*command)(const std::filesystem::path& program, const SliceJob& job) = nullptr;
+  // If given: puts the G-code of a run where the job wants it, and gives figures that only its output says.
+  GcodeFigures (*collect)(const SliceJob& job, const std::string& printed) = nullptr;
+
+  // What the first lines of a G-code say about who made it; its name with the version begins at the last
+  // word.
+  std::vector<std::string_view> marks;
+  std::vector<FigureLine> figures;
+  bool (*begins_layer)(std::string_view comment) = nullptr;
+  std::vector<std::string> calls_hook;  // of the family, those that call post-processing scripts
+  bool repeats_gcode = false;           // a G-code holds the settings to slice the model once more
+
+  // Absent for a slicer that reads no modifiers; voids are surfaces, which all of them take.
+  std::optional<ModifierFormat> modifiers;
+};
+
+// The rows, each made in a room of its own.
+SlicerProfile prusa_slicer();
+SlicerProfile orca_slicer();
+SlicerProfile cura_engine();
+SlicerProfile slic3r();
+
+// All slicers, in the order in which they are listed.
+inline const std::vector<SlicerProfile>& slicers() {
+  static const std::vector<SlicerProfile> rows{prusa_slicer(), orca_slicer(), cura_engine(), slic3r()};
+  return rows;
+}
+
+// Where their projects say which volumes are not part of the model.
+std::vector<VolumeList> volume_lists();
+
+// What `texts` gives for each slicer, one after the other.
+std::vector<std::string> of_slicers(
+    const std::function<std::vector<std::string>(const SlicerProfile&)>& texts);
+
+// "a, b or c"
+std::string listed(const std::vector<std::string>& texts, const std::string& last);
+
+// A slicer's command line program.
+struct Slicer {
+  const SlicerProfile* profile = nullptr;
+  std::filesystem::path program;
+};
+
+// The program at `path` or, without one, the first of the slicer's usual names on the search path. Throws
+// UsageError that says where was looked.
+Slicer find_slicer(const SlicerProfile& profile, const std::filesystem::path& path);
+
+// Throws InputError for a settings file that cannot be read.
+void require_settings(const SlicerSettings& settings);
+
+// True if the settings name programs to be run on the G-code.
+bool have_post_processing(const SlicerSettings& settings);
+
+// In the environment of every slicer that is run here, so that a hook it calls can tell.
+inline constexpr const char* kSlicedByVariable = "AERATE_SLICING";
+
+// Slices a model with its settings, but without their post-processing programs, and gives what the slicer
+// says of the result. Throws FailureError, with everything the slicer printed, if it fails or leaves no
+// G-code.
+GcodeFigures slice(const Slicer& slicer, const SliceJob& job, Monitor& monitor);
+
+}  // namespace aerate

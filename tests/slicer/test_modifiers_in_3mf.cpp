@@ -1,0 +1,95 @@
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "printing/slicers/slicers.h"
+#include "tests/support/caught.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/zip.h"
+
+// What each slicer's row writes into a package about modifiers, and reads back.
+namespace aerate::test {
+namespace {
+
+// A box with one void: the void's shell is inward, as in every solid.
+Solid box_with_a_void() {
+  const Mesh outer = make_box({0, 0, 0}, {20, 20, 20});
+  const Mesh shell = turned_inside_out(make_box({8, 8, 8}, {12, 12, 12}));
+  Solid solid;
+  solid.mesh = join(outer, shell);
+  solid.parts = {{PartKind::outer, 0, outer.triangles.size()}};
+  solid.close_part(PartKind::void_surface);
+  return solid;
+}
+
+class ModifiersIn3mf : public testing::Test {
+ protected:
+  static std::vector<SlicerProfile> those_that_take_them() {
+    std::vector<SlicerProfile> all;
+    for (const SlicerProfile& slicer : slicers()) {
+      if (slicer.modifiers) all.push_back(slicer);
+    }
+    return all;
+  }
+
+  std::filesystem::path file(const std::string& bytes) const { return folder_.write("model.3mf", bytes); }
+  std::filesystem::path file(const Solid& solid, double infill, const SlicerProfile& slicer) const {
+    const std::vector<ObjectPart> parts = modifier_parts(solid, infill);
+    return file(to_3mf(with_void_shells_turned(solid.mesh, solid),
+                       slicer.modifiers->extras(parts.front(), parts.back())));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(ModifiersIn3mf, TheModelAndItsModifierAreNamed) {
+  const Solid solid = box_with_a_void();
+  EXPECT_EQ(those_that_take_them().size(), 2u);
+  for (const SlicerProfile& slicer : those_that_take_them()) {
+    SCOPED_TRACE(slicer.name);
+    const auto path = file(solid, 12.5, slicer);
+    EXPECT_EQ(slicer.modifiers->read(path), modifier_parts(solid, 12.5));
+    EXPECT_EQ(signed_volume(load_model(path).mesh), 8000 + 64);
+    // As a model it would print the voids.
+    EXPECT_TRUE(contains(
+        message_of<InputError>([&] { load_model(path, {.unit = {}, .volume_lists = volume_lists()}); }),
+        "not part of the model"));
+  }
+}
+
+TEST_F(ModifiersIn3mf, AreBodiesOfTheirOwn) {
+  const Solid solid = box_with_a_void();
+  const Mesh bodies = with_void_shells_turned(solid.mesh, solid);
+  EXPECT_DOUBLE_EQ(signed_volume(solid.mesh), 8000 - 64);
+  EXPECT_DOUBLE_EQ(signed_volume(bodies), 8000 + 64);
+  EXPECT_EQ(with_void_shells_turned(bodies, solid).triangles, solid.mesh.triangles);
+}
+
+TEST_F(ModifiersIn3mf, PartsThatAreNotThoseMeantAreNoticed) {
+  const Solid solid = box_with_a_void();
+  Solid shifted = solid;
+  shifted.parts.front().triangle_count -= 1;
+  for (const SlicerProfile& slicer : those_that_take_them()) {
+    SCOPED_TRACE(slicer.name);
+    EXPECT_NE(slicer.modifiers->read(file(shifted, 0, slicer)), modifier_parts(solid, 0));
+    EXPECT_NE(slicer.modifiers->read(file(solid, 10, slicer)), modifier_parts(solid, 0));
+  }
+}
+
+TEST_F(ModifiersIn3mf, PackagesOfAnotherKindAreRefused) {
+  for (const SlicerProfile& slicer : those_that_take_them()) {
+    SCOPED_TRACE(slicer.name);
+    const std::string list = slicer.modifiers->volumes.entry;
+    const auto read = [&](const std::filesystem::path& path) {
+      return message_of<FailureError>([&] { slicer.modifiers->read(path); });
+    };
+    EXPECT_TRUE(contains(read(file(to_3mf(make_box({0, 0, 0}, {1, 1, 1})))), list + " is missing"));
+    EXPECT_TRUE(contains(read(file(make_zip({{list, "<config><object>"}}))), list + ": "));
+  }
+}
+
+}  // namespace
+}  // namespace aerate::test
