@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "cli/json_parts.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "printing/strength.h"
 
 namespace aerate::cli {

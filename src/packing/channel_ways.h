@@ -9,7 +9,7 @@
 
 #include "core/drainage.h"
 #include "core/monitor.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "kernels/sphere.h"
 #include "packing/tube_clearance.h"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "pipeline/process_file.h"
 
 namespace aerate {

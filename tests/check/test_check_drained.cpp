@@ -9,7 +9,7 @@
 #include "check/check_drained.h"
 #include "check/outward_shells.h"
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
 #include "packing/tube_through.h"

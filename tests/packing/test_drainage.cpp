@@ -8,7 +8,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "core/segment_distance.h"
 #include "core/top_opening.h"
 #include "packing/adaptive.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <tbb/parallel_for.h>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "files/load.h"
 #include "kernels/roof_distance.h"
 #include "packing/adaptive.h"

@@ -8,7 +8,7 @@
 #include <tbb/global_control.h>
 #include <vector>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "core/top_opening.h"
 #include "printing/ball_template.h"
 #include "printing/carve_drained.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <tbb/global_control.h>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "kernels/roof_distance.h"
 #include "printing/carve.h"
 #include "printing/cut_ball.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "core/segment_distance.h"
 #include "core/surface_index.h"
 #include "kernels/point_triangle.h"
