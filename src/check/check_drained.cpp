@@ -37,9 +37,7 @@ constexpr double kLimitError = 1e-7;  // mm
 // Vertices on a cut, rounded to fp32: a few units in the last place of the largest coordinate.
 constexpr double kRoundingShare = 5e-7;
 
-// A hole is cut by a prism that ends so many radii beyond the surface; triangles are taken along that are a
-// thousandth of a millimetre beyond it.
-constexpr double kCutBeyond = 1.8;
+// With a hole triangles are cut that are a thousandth of a millimetre beyond it.
 constexpr double kCutMargin = 2e-3;
 
 // How far round a hole triangles are looked at, mm.

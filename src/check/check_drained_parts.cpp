@@ -12,7 +12,7 @@
 #include "check/planned_shape.h"
 #include "check/polled_loop.h"
 #include "core/segment_distance.h"
-#include "core/top_opening.h"
+#include "core/void_shape.h"
 
 namespace aerate {
 namespace {
@@ -141,17 +141,17 @@ DrainedParts check_drained_parts(const Mesh& mesh, const DrainedSolid& solid, st
         flaw_of_tube(mesh, part_of(mesh, solid.channel_ends, i, first_channel), plan.channels[i].tube);
     if (flaw) fail_check("channel {}: {}", i, *flaw);
     const Channel& channel = plan.channels[i];
-    const Sphere& from = balls[channel.from];
-    const bool is_out_of_top = comes_out_of_top(channel.tube, from, plan.roof);
-    if ((!is_out_of_top && !opens_below_roof(channel.tube, TubeEnd::start, from, plan.roof)) ||
-        !opens_below_roof(channel.tube, TubeEnd::end, balls[channel.to], plan.roof))
+    const VoidShape from(balls[channel.from], plan.roof), to(balls[channel.to], plan.roof);
+    if ((!from.comes_out_of_top(channel.tube) && !from.opens_below_roof(channel.tube, TubeEnd::start)) ||
+        !to.opens_below_roof(channel.tube, TubeEnd::end))
       fail_check("channel {}: it opens into a roof", i);
   }
   const std::size_t first_hole = plan.channels.empty() ? first_channel : solid.channel_ends.back();
   for (std::size_t i = 0; i < plan.holes.size(); ++i) {
     const auto flaw = flaw_of_tube(mesh, part_of(mesh, solid.hole_ends, i, first_hole), plan.holes[i].tube);
     if (flaw) fail_check("escape hole {}: {}", i, *flaw);
-    if (!opens_below_roof(plan.holes[i].tube, TubeEnd::start, balls[plan.holes[i].from], plan.roof))
+    const VoidShape from(balls[plan.holes[i].from], plan.roof);
+    if (!from.opens_below_roof(plan.holes[i].tube, TubeEnd::start))
       fail_check("escape hole {}: it opens into a roof", i);
   }
   return parts;
@@ -165,7 +165,8 @@ void check_tube_gaps(std::span<const Sphere> balls, const DrainagePlan& plan, do
     const Tube& tube = *tubes[i].tube;
     for (std::uint32_t ball = 0; ball < balls.size(); ++ball) {
       if (ball == tubes[i].from || ball == tubes[i].to) continue;
-      const double distance = distance_to_void({tube.start, tube.end}, plan.roof, balls[ball]) - tube.radius;
+      const double distance =
+          VoidShape(balls[ball], plan.roof).distance_to({tube.start, tube.end}) - tube.radius;
       if (distance < gap - kLimitError)
         fail_check("a channel or hole is {:.9g} mm from void {}, the gap is {:.9g} mm", distance, ball, gap);
     }

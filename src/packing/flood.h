@@ -22,7 +22,7 @@ struct FloodStep {
 inline constexpr std::size_t kExistingChannel = std::numeric_limits<std::size_t>::max();
 
 struct FloodedVoids {
-  std::span<const Sphere> spheres;
+  std::span<const VoidShape> voids;
   std::span<const std::uint32_t> network_of;  // kOutside for those that are left out
   const DrainagePlan& plan;                   // its holes and channels so far
   const ChannelWays& ways;
@@ -31,7 +31,7 @@ struct FloodedVoids {
 // Finds those ways, by void, for all that can be reached from the lowest hole of their network, in order of
 // that height; `up` is against gravity. `make` is called for each channel that is not there yet and would be
 // the next; the flood takes it if that returns true.
-std::vector<FloodStep> flood(const FloodedVoids& voids, Vec3d up,
+std::vector<FloodStep> flood(const FloodedVoids& flooded, Vec3d up,
                              const std::function<bool(std::size_t way)>& make);
 
 }  // namespace aerate

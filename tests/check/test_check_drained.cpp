@@ -197,10 +197,11 @@ class CheckDrainedRoofs : public CheckDrained {
     plan_ = {};
     plan_.roof = limits_.roof;
     plan_.network_count = 1;
+    const std::vector<VoidShape> voids = shapes_of(balls_, limits_.roof);
     const Vec3d a = balls_[0].centre, b = balls_[1].centre;
-    plan_.channels.push_back({0, 1, tube_between(balls_[0], balls_[1], a, b, channel_radius).value()});
+    plan_.channels.push_back({0, 1, tube_between(voids[0], voids[1], a, b, channel_radius).value()});
     for (std::uint32_t i = 0; i < 2; ++i) {
-      Tube tube = tube_out_of(balls_[i], balls_[i].centre, {0, 0, -1}, 1, 2.5).value();
+      Tube tube = tube_out_of(voids[i], voids[i].centre(), {0, 0, -1}, 1, 2.5).value();
       tube.end.z = 0;
       plan_.holes.push_back({i, tube, 0});
     }

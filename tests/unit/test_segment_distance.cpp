@@ -5,6 +5,7 @@
 #include "core/overhang.h"
 #include "core/segment_distance.h"
 #include "core/surface_index.h"
+#include "core/void_shape.h"
 #include "kernels/point_triangle.h"
 #include "tests/support/shapes.h"
 
@@ -77,8 +78,11 @@ TEST(SegmentDistance, ToVoidsWithRoofs) {
   for (const Segment& segment :
        {Segment{{9, 2, 3}, {9, 5, 3}}, Segment{{4, 2, 12}, {9, 2, 8}}, Segment{{1, 2, 11}, {1, 2, 14}},
         Segment{{-9, 4, 9}, {9, 4, 9}}, Segment{{1, 8, -6}, {1, 9, 20}}}) {
-    EXPECT_NEAR(distance_to_void(segment, roof, planned), by_balls(segment), 1e-6);
-    EXPECT_NEAR(distance_to_void(segment, {}, planned), distance_to_point(segment, planned.centre) - 5,
+    const double distance = VoidShape(planned, roof).distance_to(segment);
+    EXPECT_NEAR(distance, by_balls(segment), 1e-6);
+    EXPECT_TRUE(VoidShape(planned, roof).is_farther_than(distance - 1e-6, segment));
+    EXPECT_FALSE(VoidShape(planned, roof).is_farther_than(distance + 1e-6, segment));
+    EXPECT_NEAR(VoidShape(planned, {}).distance_to(segment), distance_to_point(segment, planned.centre) - 5,
                 1e-12);
   }
 }
