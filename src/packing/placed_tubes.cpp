@@ -64,6 +64,8 @@ void PlacedTubes::place(const EscapeHole& hole) {
 void PlacedTubes::remove_tubes_of(const std::function<bool(std::uint32_t)>& is_such) {
   std::erase_if(plan_.channels, [&](const Channel& c) { return is_such(c.from) || is_such(c.to); });
   std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return is_such(hole.from); });
+  for (auto& [cell, placed] : cells_)
+    std::erase_if(placed, [&](const Placed& tube) { return is_such(tube.from) || is_such(tube.to); });
 }
 
 }  // namespace aerate

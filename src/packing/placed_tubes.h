@@ -32,7 +32,6 @@ class PlacedTubes {
   void place(const EscapeHole& hole);
   // All that lead from or to such voids.
   void remove_tubes_of(const std::function<bool(std::uint32_t)>& is_such);
-  void drop_channels_after(std::size_t count) { plan_.channels.resize(count); }
 
  private:
   struct Placed {

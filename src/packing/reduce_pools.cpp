@@ -74,7 +74,6 @@ Draft open_pools(DrainageTask& task, Draft draft) {
 Draft add_channels_for_pools(DrainageTask& task, Draft draft) {
   const double before = pools_of(task, draft).after_both;
   if (before <= kPoolsAimedAt * task.volume) return draft;
-  const std::size_t tree_size = draft.tubes.plan().channels.size();
   const SpillHeights upright = spill_heights(task.voids, draft.tubes.plan(), task.up());
   const std::vector<FloodStep> steps =
       flood({task.voids, draft.network_of, draft.tubes.plan(), task.ways}, -task.up(),
@@ -88,13 +87,13 @@ Draft add_channels_for_pools(DrainageTask& task, Draft draft) {
          at = steps[at].from)
       is_on_way[at] = true;
   }
+  Draft with_more = draft;
   for (std::uint32_t i = 0; i < task.voids.size(); ++i) {
     const std::size_t way = steps[i].way;
-    if (is_on_way[i] && way != kExistingChannel && is_open(task, draft.tubes, way))
-      draft.tubes.place(task.ways[way].channel);
+    if (is_on_way[i] && way != kExistingChannel && is_open(task, with_more.tubes, way))
+      with_more.tubes.place(task.ways[way].channel);
   }
-  if (pools_of(task, draft).after_both > kLeastGain * before) draft.tubes.drop_channels_after(tree_size);
-  return draft;
+  return pools_of(task, with_more).after_both <= kLeastGain * before ? with_more : draft;
 }
 
 Draft leave_out_pools(DrainageTask& task, Draft draft) {

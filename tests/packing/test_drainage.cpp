@@ -201,6 +201,25 @@ TEST(TubeClearances, WhereARayMeetsTheSurface) {
   EXPECT_FALSE(clearance.first_hit({20, 21, 50}, {0, 0, 1}, 100).has_value());
 }
 
+TEST(PlacedTubes, KeepClearOfThoseThatAreThereAndNoOthers) {
+  const Tube tube{{0, 0, 0}, {10, 0, 0}, 1}, beside{{0, 2.9, 0}, {10, 2.9, 0}, 1};
+  PlacedTubes tubes({}, 1, 20, 2);
+  EXPECT_TRUE(tubes.keep_clear_of(beside, 2, 3));
+  tubes.place(Channel{0, 1, tube});
+  tubes.place(EscapeHole{4, {{0, 0, 9}, {10, 0, 9}, 1}, 0});
+  EXPECT_FALSE(tubes.keep_clear_of(beside, 2, 3));  // 0.9 mm from the channel
+  EXPECT_TRUE(tubes.keep_clear_of(beside, 1, 3));   // as far as openings into one void have to be
+  EXPECT_FALSE(tubes.keep_clear_of({{0, 2.9, 9}, {10, 2.9, 9}, 1}, 2, 2));
+  PlacedTubes fewer = tubes;
+  fewer.remove_tubes_of([](std::uint32_t i) { return i == 1; });
+  EXPECT_TRUE(fewer.keep_clear_of(beside, 2, 3));
+  EXPECT_FALSE(fewer.keep_clear_of({{0, 2.9, 9}, {10, 2.9, 9}, 1}, 2, 2));
+  EXPECT_EQ(fewer.plan().channels.size(), 0U);
+  EXPECT_EQ(fewer.plan().holes.size(), 1U);
+  EXPECT_FALSE(tubes.keep_clear_of(beside, 2, 3));  // the copy was changed, not this
+  EXPECT_EQ(tubes.plan().channels.size(), 1U);
+}
+
 TEST(HolePlaces, ComeInOrderBeforeAllAreLookedAt) {
   const Mesh box = test::make_box({0, 0, 0}, {60, 40, 40});
   const Packing packing = packing_of({ball({12, 20, 10}, 7), ball({30, 20, 14}, 8), ball({48, 18, 26}, 9)});
@@ -390,6 +409,17 @@ TEST_F(PlanDrainage, LittleStaysInAPlateAndEachGroupHasTwoHoles) {
     EXPECT_GE(holes[root], 2);
   }
   for (std::uint32_t i = 0; i < planned.kept.size(); ++i) EXPECT_TRUE(networks.contains(sets.root(i)));
+}
+
+// Where channels out of dropped branches were still to be kept clear of, 40 voids would be left.
+TEST_F(PlanDrainage, WhatWasLeftOutDoesNotStandInTheWay) {
+  mesh_ = test::make_box({0, 0, 0}, {110, 100, 22});
+  Monitor silent;
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
+  const PackingLimits limits{.wall = 1, .gap = 1, .min_radius = 3, .max_radius = 8, .roof = roof};
+  packing_ = pack_adaptive(mesh_, limits, {}, silent);
+  request_ = {.channel_radius = 1.4, .hole_radius = 2.5, .escape_holes = {}};
+  EXPECT_GE(plan().kept.size(), 55U);
 }
 
 TEST_F(PlanDrainage, DoesNotOpenIntoACavityOfTheModel) {
