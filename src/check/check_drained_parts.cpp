@@ -142,8 +142,7 @@ DrainedParts check_drained_parts(const Mesh& mesh, const DrainedSolid& solid, st
     if (flaw) fail_check("channel {}: {}", i, *flaw);
     const Channel& channel = plan.channels[i];
     const VoidShape from(balls[channel.from], plan.roof), to(balls[channel.to], plan.roof);
-    if ((!from.comes_out_of_top(channel.tube) && !from.opens_below_roof(channel.tube, TubeEnd::start)) ||
-        !to.opens_below_roof(channel.tube, TubeEnd::end))
+    if (!from.may_open(channel.tube, TubeEnd::start) || !to.may_open(channel.tube, TubeEnd::end))
       fail_check("channel {}: it opens into a roof", i);
   }
   const std::size_t first_hole = plan.channels.empty() ? first_channel : solid.channel_ends.back();

@@ -41,30 +41,22 @@ std::vector<TubeLine> tube_lines(std::size_t sides) {
   return lines;
 }
 
-// The rim of a tube's opening into a ball, which it meets all round.
-class Rim {
- public:
-  Rim(const Tube& tube, TubeEnd end, const Sphere& ball, Vec3d up)
-      : tube_(tube), end_(end), ball_(ball), frame_(frame_of(tube, up)) {}
-
-  // Where a line of the tube leaves the ball (at the tube's start) or enters it (at its end).
-  Vec3d at(TubeLine line) const {
-    const Vec3d on_line =
-        tube_.start + (frame_.down * line.cosine + frame_.across * line.sine) * tube_.radius;
-    const Vec3d from_centre = on_line - ball_.centre;
-    const double along = dot(from_centre, frame_.axis);
+// Where lines of a tube leave a ball (at the tube's start) or enter it (at its end): the rim of its opening.
+std::vector<Vec3d> rim_on(const Sphere& ball, const Tube& tube, TubeEnd end, Vec3d up,
+                          std::span<const TubeLine> lines) {
+  const TubeFrame frame = frame_of(tube, up);
+  std::vector<Vec3d> rim;
+  rim.reserve(lines.size());
+  for (const TubeLine line : lines) {
+    const Vec3d on_line = tube.start + (frame.down * line.cosine + frame.across * line.sine) * tube.radius;
+    const Vec3d from_centre = on_line - ball.centre;
+    const double along = dot(from_centre, frame.axis);
     const double half_chord =
-        std::sqrt(std::max(0.0, ball_.radius * ball_.radius - length_squared(from_centre) + along * along));
-    const double t = -along + (end_ == TubeEnd::start ? half_chord : -half_chord);
-    return on_line + frame_.axis * t;
+        std::sqrt(std::max(0.0, ball.radius * ball.radius - length_squared(from_centre) + along * along));
+    rim.push_back(on_line + frame.axis * (-along + (end == TubeEnd::start ? half_chord : -half_chord)));
   }
-
- private:
-  const Tube& tube_;
-  TubeEnd end_;
-  const Sphere& ball_;
-  TubeFrame frame_;
-};
+  return rim;
+}
 
 // Of a ball, up to a height above its lowest point.
 double cap_volume(double radius, double depth) {
@@ -138,9 +130,9 @@ bool VoidShape::opens_below_roof(const Tube& tube, TubeEnd end) const {
   const double shoulder = roof_.shoulder(ball_.radius), aside = ball_.radius * roof_.cosine;
   const double spacing = kOpeningSpacingShare * tube.radius;
   static const std::vector<TubeLine> lines = tube_lines(kRoofPoints);
-  const Rim rim(tube, end, ball_, roof_.up);
-  return std::all_of(lines.begin(), lines.end(), [&](TubeLine line) {
-    const Vec3d offset = rim.at(line) - ball_.centre;
+  const std::vector<Vec3d> rim = rim_on(ball_, tube, end, roof_.up, lines);
+  return std::all_of(rim.begin(), rim.end(), [&](Vec3d p) {
+    const Vec3d offset = p - ball_.centre;
     const double height = dot(offset, roof_.up);
     // And distance from the point of the circle above it.
     return height < shoulder &&
@@ -185,18 +177,13 @@ double VoidShape::opening_floor(const Tube& tube, TubeEnd end, Vec3d up) const {
                                (end == TubeEnd::start ? side > 0 : side < 0);
   if (opens_at_lowest) return dot(lowest, up);
   static const std::vector<TubeLine> lines = tube_lines(kFloorPoints);
-  const Rim rim(tube, end, ball_, up);
   double floor = std::numeric_limits<double>::infinity();
-  for (const TubeLine line : lines) floor = std::min(floor, dot(rim.at(line), up));
+  for (const Vec3d p : rim_on(ball_, tube, end, up, lines)) floor = std::min(floor, dot(p, up));
   return floor;
 }
 
 std::vector<Vec3d> VoidShape::rim(const Tube& tube, TubeEnd end, std::size_t sides) const {
-  const Rim rim(tube, end, ball_, roof_.up);
-  std::vector<Vec3d> points;
-  points.reserve(sides);
-  for (const TubeLine line : tube_lines(sides)) points.push_back(rim.at(line));
-  return points;
+  return rim_on(ball_, tube, end, roof_.up, tube_lines(sides));
 }
 
 std::vector<VoidShape> shapes_of(std::span<const Sphere> spheres, const Roof& roof) {

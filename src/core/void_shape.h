@@ -76,6 +76,11 @@ class VoidShape {
   // Does the tube start there? It then runs along `roof.up` through the centre.
   bool comes_out_of_top(const Tube& tube) const;
 
+  // Does the tube open into the void in one of these two ways?
+  bool may_open(const Tube& tube, TubeEnd end) const {
+    return opens_below_roof(tube, end) || (end == TubeEnd::start && comes_out_of_top(tube));
+  }
+
   // Height along `up` above which liquid leaves through the tube: the lowest point of its opening.
   double opening_floor(const Tube& tube, TubeEnd end, Vec3d up) const;
 

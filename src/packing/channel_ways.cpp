@@ -38,42 +38,42 @@ class ChannelFinder {
       : voids_(voids), roof_(roof), radius_(radius), longest_(longest) {}
 
   // All from a void to others that come after it.
-  std::vector<ChannelWay> from(std::uint32_t at, std::span<const std::uint32_t> neighbours) const {
+  std::vector<ChannelWay> from(std::uint32_t at, std::span<const TubeClearance::Neighbour> neighbours) const {
     std::vector<ChannelWay> found;
-    for (const std::uint32_t other : neighbours) {
-      for (std::size_t way = 0; way < kWays && other > at; ++way) {
-        const auto channel = find(at, other, way);
-        if (channel) found.push_back({*channel, {sill_of(*channel, roof_.up), sill_of(*channel, -roof_.up)}});
+    for (const auto& [gap, other] : neighbours) {
+      if (other < at) continue;
+      const auto height_of = [&](std::uint32_t i) { return dot(voids_[i].centre(), roof_.up); };
+      const bool is_lower = height_of(at) <= height_of(other);
+      const std::uint32_t a = is_lower ? at : other, b = is_lower ? other : at;
+      const VoidShape& lower = voids_[a];
+      const VoidShape& upper = voids_[b];
+      for (std::size_t way = 0; way < kWays; ++way) {
+        const auto tube =
+            way == kOutOfTop ? out_of_top(lower, upper) : through(lower, upper, kAttachments[way]);
+        if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
+            !lower.may_open(*tube, TubeEnd::start) || !upper.may_open(*tube, TubeEnd::end))
+          continue;
+        found.push_back({{a, b, *tube},
+                         {sill_of(*tube, lower, upper, roof_.up), sill_of(*tube, lower, upper, -roof_.up)}});
       }
     }
     return found;
   }
 
  private:
-  double sill_of(const Channel& channel, Vec3d up) const {
-    return aerate::sill_of(channel.tube, voids_[channel.from], voids_[channel.to], up);
+  std::optional<Tube> through(const VoidShape& lower, const VoidShape& upper, Attachment where) const {
+    const Vec3d inside_lower = lower.centre() + roof_.up * (where.lower * lower.radius());
+    const Vec3d inside_upper = upper.centre() + roof_.up * (where.upper * upper.radius());
+    // Off the centres only where that leaves a channel which does not fall from the lower to the upper.
+    if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, roof_.up) < -kLevel)
+      return std::nullopt;
+    return tube_between(lower, upper, below_roof(lower, inside_lower, inside_upper), inside_upper, radius_);
   }
 
-  std::optional<Channel> find(std::uint32_t a, std::uint32_t b, std::size_t way) const {
-    const Vec3d up = roof_.up;
-    const double height_a = dot(voids_[a].centre(), up), height_b = dot(voids_[b].centre(), up);
-    if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
-    const VoidShape& lower = voids_[a];
-    const VoidShape& upper = voids_[b];
-    if (way == kOutOfTop) return out_of_top(a, b);
-    const Attachment where = kAttachments[way];
-    Vec3d inside_lower = lower.centre() + up * (where.lower * lower.radius());
-    const Vec3d inside_upper = upper.centre() + up * (where.upper * upper.radius());
-    // Off the centres only where that leaves a channel which does not fall from the lower to the upper.
-    if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) < -kLevel)
-      return std::nullopt;
-    inside_lower = below_roof(lower, inside_lower, inside_upper);
-    const auto tube = tube_between(lower, upper, inside_lower, inside_upper, radius_);
-    if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
-        !lower.opens_below_roof(*tube, TubeEnd::start) || !upper.opens_below_roof(*tube, TubeEnd::end)) {
-      return std::nullopt;
-    }
-    return Channel{a, b, *tube};
+  std::optional<Tube> out_of_top(const VoidShape& lower, const VoidShape& upper) const {
+    if (!lower.has_top_for(radius_)) return std::nullopt;
+    const Vec3d start = lower.centre() + roof_.up * lower.top_opening_height(radius_);
+    return tube_into(upper, start, roof_.up, radius_);
   }
 
   // Where a channel from a void with a roof to a higher place has to start so that it leaves the void below
@@ -89,17 +89,6 @@ class ChannelFinder {
       inside = inside - way->across * excess;
     }
     return inside;
-  }
-
-  std::optional<Channel> out_of_top(std::uint32_t lower, std::uint32_t upper) const {
-    const VoidShape& from = voids_[lower];
-    const VoidShape& to = voids_[upper];
-    if (!from.has_top_for(radius_)) return std::nullopt;
-    const auto tube =
-        tube_into(to, from.centre() + roof_.up * from.top_opening_height(radius_), roof_.up, radius_);
-    if (!tube || length(tube->end - tube->start) > longest_ || !to.opens_below_roof(*tube, TubeEnd::end))
-      return std::nullopt;
-    return Channel{lower, upper, *tube};
   }
 
   std::span<const VoidShape> voids_;

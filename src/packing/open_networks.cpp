@@ -35,12 +35,11 @@ bool leaves_room_for_channel(DrainageTask& task, PlacedTubes tubes, const Escape
 
 // Floods all networks, and places each channel over which that reaches a void.
 std::vector<FloodStep> join_voids(DrainageTask& task, Draft& draft) {
-  return flood({task.voids, draft.network_of, draft.tubes.plan(), task.ways}, task.up(),
-               [&](std::size_t way) {
-                 const bool placed = is_open(task, draft.tubes, way);
-                 if (placed) draft.tubes.place(task.ways[way].channel);
-                 return placed;
-               });
+  return flood(task, draft, task.up(), [&](std::size_t way) {
+    const bool placed = is_open(task, draft.tubes, way);
+    if (placed) draft.tubes.place(task.ways[way].channel);
+    return placed;
+  });
 }
 
 Members reached_by(const std::vector<FloodStep>& steps, const Members& members) {

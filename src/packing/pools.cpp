@@ -42,53 +42,6 @@ double tube_volume_below(const Tube& tube, Vec3d up, double height) {
   return area * whole / kSlices;
 }
 
-// Heights above which liquid runs into a channel at its ends.
-struct ChannelFloors {
-  double start, end;
-};
-
-std::vector<ChannelFloors> floors_of_channels(std::span<const VoidShape> voids, const DrainagePlan& plan,
-                                              Vec3d up) {
-  std::vector<ChannelFloors> floors;
-  floors.reserve(plan.channels.size());
-  for (const Channel& channel : plan.channels)
-    floors.push_back({voids[channel.from].opening_floor(channel.tube, TubeEnd::start, up),
-                      voids[channel.to].opening_floor(channel.tube, TubeEnd::end, up)});
-  return floors;
-}
-
-SpillHeights spill_heights_over(std::span<const ChannelFloors> floors, std::span<const VoidShape> voids,
-                                const DrainagePlan& plan, Vec3d up) {
-  std::vector<std::vector<std::pair<std::uint32_t, double>>> ways(voids.size());
-  for (std::size_t i = 0; i < plan.channels.size(); ++i) {
-    const Channel& channel = plan.channels[i];
-    const double sill = std::max(floors[i].start, floors[i].end);
-    ways[channel.from].push_back({channel.to, sill});
-    ways[channel.to].push_back({channel.from, sill});
-  }
-  SpillHeights spills;
-  spills.height.assign(voids.size(), kInfinity);
-  spills.towards.assign(voids.size(), kOutside);
-  using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, void, towards
-  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
-  for (const EscapeHole& hole : plan.holes)
-    open.push({sill_of_hole(hole, voids[hole.from], up), hole.from, kOutside});
-  std::vector<bool> done(voids.size(), false);
-  while (!open.empty()) {
-    const auto [height, at, towards] = open.top();
-    open.pop();
-    if (done[at]) continue;
-    done[at] = true;
-    spills.height[at] = height;
-    spills.towards[at] = towards;
-    spills.order.push_back(at);
-    for (const auto& [next, sill] : ways[at]) {
-      if (!done[next]) open.push({std::max(height, sill), next, at});
-    }
-  }
-  return spills;
-}
-
 // What stays in one orientation, by void and by channel, mm3.
 struct Pools {
   std::vector<double> of_void, of_channel;
@@ -101,32 +54,18 @@ struct Pools {
   }
 };
 
-Pools find_pools(std::span<const ChannelFloors> floors, std::span<const VoidShape> voids,
-                 const DrainagePlan& plan, const SpillHeights& spills, Vec3d up) {
+Pools find_pools(std::span<const VoidShape> voids, const DrainagePlan& plan, const SpillHeights& spills,
+                 Vec3d up) {
   Pools pools;
   for (std::size_t i = 0; i < voids.size(); ++i)
     pools.of_void.push_back(voids[i].volume_below(up, spills.height[i]));
   for (std::size_t i = 0; i < plan.channels.size(); ++i) {
     const Channel& channel = plan.channels[i];
-    const double through_start = std::max(floors[i].start, spills.height[channel.from]);
-    const double through_end = std::max(floors[i].end, spills.height[channel.to]);
+    const double through_start = std::max(spills.floors[i][0], spills.height[channel.from]);
+    const double through_end = std::max(spills.floors[i][1], spills.height[channel.to]);
     pools.of_channel.push_back(tube_volume_below(channel.tube, up, std::min(through_start, through_end)));
   }
   return pools;
-}
-
-// One orientation.
-struct Orientation {
-  SpillHeights spills;
-  Pools pools;
-};
-
-Orientation look_at_orientation(std::span<const VoidShape> voids, const DrainagePlan& plan, Vec3d up) {
-  const std::vector<ChannelFloors> floors = floors_of_channels(voids, plan, up);
-  Orientation found;
-  found.spills = spill_heights_over(floors, voids, plan, up);
-  found.pools = find_pools(floors, voids, plan, found.spills, up);
-  return found;
 }
 
 // What stays of the pools `left` when it runs out along `spills` and may fill `room` on its way.
@@ -172,7 +111,35 @@ double sill_of_hole(const EscapeHole& hole, const VoidShape& from, Vec3d up) {
 }
 
 SpillHeights spill_heights(std::span<const VoidShape> voids, const DrainagePlan& plan, Vec3d up) {
-  return spill_heights_over(floors_of_channels(voids, plan, up), voids, plan, up);
+  SpillHeights spills;
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> ways(voids.size());
+  for (const Channel& channel : plan.channels) {
+    const double start = voids[channel.from].opening_floor(channel.tube, TubeEnd::start, up);
+    const double end = voids[channel.to].opening_floor(channel.tube, TubeEnd::end, up);
+    spills.floors.push_back({start, end});
+    ways[channel.from].push_back({channel.to, std::max(start, end)});
+    ways[channel.to].push_back({channel.from, std::max(start, end)});
+  }
+  spills.height.assign(voids.size(), kInfinity);
+  spills.towards.assign(voids.size(), kOutside);
+  using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, void, towards
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
+  for (const EscapeHole& hole : plan.holes)
+    open.push({sill_of_hole(hole, voids[hole.from], up), hole.from, kOutside});
+  std::vector<bool> done(voids.size(), false);
+  while (!open.empty()) {
+    const auto [height, at, towards] = open.top();
+    open.pop();
+    if (done[at]) continue;
+    done[at] = true;
+    spills.height[at] = height;
+    spills.towards[at] = towards;
+    spills.order.push_back(at);
+    for (const auto& [next, sill] : ways[at]) {
+      if (!done[next]) open.push({std::max(height, sill), next, at});
+    }
+  }
+  return spills;
 }
 
 std::vector<Pool> upright_pools(std::span<const VoidShape> voids, const DrainagePlan& plan) {
@@ -235,13 +202,21 @@ std::uint32_t fullest_branch(std::span<const VoidShape> voids, const DrainagePla
 }
 
 TrappedPools trapped_pools(std::span<const VoidShape> voids, const DrainagePlan& plan) {
-  Orientation upright, turned;
-  tbb::parallel_invoke([&] { upright = look_at_orientation(voids, plan, plan.roof.up); },
-                       [&] { turned = look_at_orientation(voids, plan, -plan.roof.up); });
+  SpillHeights spills;
+  Pools upright, turned;
+  tbb::parallel_invoke(
+      [&] {
+        const SpillHeights upright_spills = spill_heights(voids, plan, plan.roof.up);
+        upright = find_pools(voids, plan, upright_spills, plan.roof.up);
+      },
+      [&] {
+        spills = spill_heights(voids, plan, -plan.roof.up);
+        turned = find_pools(voids, plan, spills, -plan.roof.up);
+      });
   TrappedPools pools;
-  pools.upright = upright.pools.sum();
-  pools.upside_down = turned.pools.sum();
-  pools.after_both = std::min(pools.upright, retained(upright.pools, turned.pools, plan, turned.spills));
+  pools.upright = upright.sum();
+  pools.upside_down = turned.sum();
+  pools.after_both = std::min(pools.upright, retained(upright, turned, plan, spills));
   for (const VoidShape& shape : voids) pools.total += shape.volume();
   for (const Channel& channel : plan.channels) {
     pools.total += std::numbers::pi * channel.tube.radius * channel.tube.radius *

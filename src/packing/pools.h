@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,10 +17,13 @@ namespace aerate {
 
 inline constexpr std::uint32_t kOutside = 0xffffffffu;
 
+// How liquid runs out in one orientation.
 struct SpillHeights {
   std::vector<double> height;          // along `up`, by void; infinite if nothing leads out
   std::vector<std::uint32_t> towards;  // the void that it spills into, or kOutside
   std::vector<std::uint32_t> order;    // the voids that drain, those after their `towards`
+  // By channel: the heights above which it takes liquid in at its start and at its end.
+  std::vector<std::array<double, 2>> floors;
 };
 SpillHeights spill_heights(std::span<const VoidShape> voids, const DrainagePlan& plan, Vec3d up);
 

@@ -76,8 +76,7 @@ Draft add_channels_for_pools(DrainageTask& task, Draft draft) {
   if (before <= kPoolsAimedAt * task.volume) return draft;
   const SpillHeights upright = spill_heights(task.voids, draft.tubes.plan(), task.up());
   const std::vector<FloodStep> steps =
-      flood({task.voids, draft.network_of, draft.tubes.plan(), task.ways}, -task.up(),
-            [&](std::size_t way) { return is_open(task, draft.tubes, way); });
+      flood(task, draft, -task.up(), [&](std::size_t way) { return is_open(task, draft.tubes, way); });
   std::vector<bool> is_on_way(task.voids.size(), false);
   for (std::uint32_t i = 0; i < task.voids.size(); ++i) {
     if (upright.height[i] == std::numeric_limits<double>::infinity()) continue;

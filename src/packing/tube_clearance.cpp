@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "kernels/nearest_point.h"
@@ -71,36 +72,22 @@ TubeClearance::TubeClearance(const SurfaceIndex& surface, const Packing& packing
       longest_(longest) {
   for (const VoidShape& shape : voids_) roofs_ = std::max(roofs_, shape.reach_beyond_ball());
   const double reach = longest + widest_radius + limits_.gap + roofs_;
-  const std::vector<SpherePair> pairs = find_pairs_within(packing.spheres, reach);
-  offsets_.assign(voids_.size() + 1, 0);
-  for (const SpherePair& pair : pairs) {
-    ++offsets_[pair.first + 1];
-    ++offsets_[pair.second + 1];
+  neighbours_.resize(voids_.size());
+  for (const SpherePair& pair : find_pairs_within(packing.spheres, reach)) {
+    neighbours_[pair.first].push_back({pair.gap, pair.second});
+    neighbours_[pair.second].push_back({pair.gap, pair.first});
   }
-  for (std::size_t i = 0; i < voids_.size(); ++i) offsets_[i + 1] += offsets_[i];
-  std::vector<std::pair<double, std::uint32_t>> rows(2 * pairs.size());
-  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
-  for (const SpherePair& pair : pairs) {
-    rows[next[pair.first]++] = {pair.gap, pair.second};
-    rows[next[pair.second]++] = {pair.gap, pair.first};
-  }
-  for (std::size_t i = 0; i < voids_.size(); ++i) {
-    std::sort(rows.begin() + static_cast<std::ptrdiff_t>(offsets_[i]),
-              rows.begin() + static_cast<std::ptrdiff_t>(offsets_[i + 1]));
-  }
-  neighbours_.reserve(rows.size());
-  gaps_.reserve(rows.size());
-  for (const auto& [gap, ball] : rows) {
-    gaps_.push_back(gap);
-    neighbours_.push_back(ball);
-  }
+  for (std::vector<Neighbour>& neighbours : neighbours_)
+    std::sort(neighbours.begin(), neighbours.end(), [](const Neighbour& a, const Neighbour& b) {
+      return std::tie(a.gap, a.index) < std::tie(b.gap, b.index);
+    });
 }
 
-std::span<const std::uint32_t> TubeClearance::neighbours(std::uint32_t at) const {
-  const auto first = gaps_.begin() + static_cast<std::ptrdiff_t>(offsets_[at]);
-  const auto last = gaps_.begin() + static_cast<std::ptrdiff_t>(offsets_[at + 1]);
-  const auto count = static_cast<std::size_t>(std::lower_bound(first, last, longest_) - first);
-  return std::span(neighbours_).subspan(offsets_[at], count);
+std::span<const TubeClearance::Neighbour> TubeClearance::neighbours(std::uint32_t at) const {
+  const std::vector<Neighbour>& all = neighbours_[at];
+  const auto end =
+      std::find_if(all.begin(), all.end(), [&](const Neighbour& n) { return n.gap >= longest_; });
+  return {all.begin(), end};
 }
 
 double TubeClearance::to_surface(Vec3d point, double limit) const {
@@ -164,11 +151,11 @@ bool TubeClearance::keeps_away(const Tube& tube, double most, double slope) cons
 }
 
 bool TubeClearance::keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const {
-  const double reach = length(tube.end - tube.start) + tube.radius + limits_.gap + roofs_;
-  for (std::size_t i = offsets_[from]; i < offsets_[from + 1] && gaps_[i] <= reach; ++i) {
-    const bool is_clear = neighbours_[i] == to || voids_[neighbours_[i]].is_farther_than(
-                                                      tube.radius + limits_.gap, {tube.start, tube.end});
-    if (!is_clear) return false;
+  const double needed = tube.radius + limits_.gap;
+  const double reach = length(tube.end - tube.start) + needed + roofs_;
+  for (const auto& [gap, other] : neighbours_[from]) {
+    if (gap > reach) break;
+    if (other != to && !voids_[other].is_farther_than(needed, {tube.start, tube.end})) return false;
   }
   return true;
 }

@@ -45,8 +45,12 @@ class TubeClearance {
   // Do voids other than those two keep the gap from the tube, which starts at void `from`?
   bool keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
 
-  // Neighbours of a void, the nearest first; their surfaces are nearer than `longest`.
-  std::span<const std::uint32_t> neighbours(std::uint32_t at) const;
+  // Neighbours of a void, the nearest first; their balls are nearer than `longest`.
+  struct Neighbour {
+    double gap;
+    std::uint32_t index;
+  };
+  std::span<const Neighbour> neighbours(std::uint32_t at) const;
 
   static constexpr double kWallSlack = 0.02;  // mm
 
@@ -57,11 +61,10 @@ class TubeClearance {
   kernels::TriangleBvhView bvh_;
   std::vector<VoidShape> voids_;
   PackingLimits limits_;
-  double longest_;
   double roofs_ = 0;  // how far a void reaches beyond its ball at most
-  std::vector<std::size_t> offsets_;
-  std::vector<std::uint32_t> neighbours_;
-  std::vector<double> gaps_;  // to each of these neighbours
+  double longest_;
+  std::vector<std::vector<Neighbour>>
+      neighbours_;  // by void; those too that only tubes to others may be near
 };
 
 }  // namespace aerate
