@@ -93,16 +93,16 @@ void print_spheres() {
   fmt::print("\nCarving many voids, 0.62..2.62 mm, tolerance 0.05 mm\n\n{:>10} {:>12} {:>10}\n", "voids",
              "triangles", "seconds");
   for (const int count : {3000, 100000}) {
-    VoidPlan plan;
+    Packing packing;
     for (int i = 0; i < count; ++i) {
-      plan.spheres.push_back({{6.0 * (i % 50), 6.0 * (i / 50 % 50), 6.0 * (i / 2500)},
-                              0.62 + 2.0 * i / count,
-                              SphereKind::lattice});
+      packing.spheres.push_back({{6.0 * (i % 50), 6.0 * (i / 50 % 50), 6.0 * (i / 2500)},
+                                 0.62 + 2.0 * i / count,
+                                 SphereKind::lattice});
     }
     Monitor monitor;
     std::size_t triangles = 0;
     const double time = least_seconds(
-        [&] { triangles = carve_keeping_surface({}, plan, {0.05}, monitor).mesh.triangles.size(); });
+        [&] { triangles = carve_keeping_surface({}, packing, {0.05}, monitor).mesh.triangles.size(); });
     fmt::print("{:10} {:12} {:10.3f}\n", count, triangles, time);
   }
 }

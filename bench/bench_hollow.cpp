@@ -7,7 +7,6 @@
 #include <string>
 
 #include "core/monitor.h"
-#include "core/void_plan.h"
 #include "files/load.h"
 #include "files/write.h"
 #include "kernels/hexagonal.h"
@@ -52,9 +51,9 @@ double naive_pipeline(const std::filesystem::path& model, double scale, const Pa
   lap("load");
   const ModelLevelSet level_set(mesh, voxel, 16e9, monitor);
   lap("meshToVolume");
-  const VoidPlan plan{pack_hexagonal(mesh, limits, monitor).spheres};
+  const Packing packing = pack_hexagonal(mesh, limits, monitor);
   lap("pack");
-  const Solid solid = level_set.subtract(plan, {.tolerance = 0.05}, monitor);
+  const Solid solid = level_set.subtract(packing, {.tolerance = 0.05}, monitor);
   lap("csgDifference and volumeToMesh");
   write_mesh(solid.mesh, output, MeshFormat::stl);
   lap("write");

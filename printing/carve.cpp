@@ -9,9 +9,9 @@
 namespace aerate {
 namespace {
 
-std::size_t count_triangles(VoidTemplates& templates, const VoidPlan& plan, double tolerance) {
+std::size_t count_triangles(VoidTemplates& templates, const Packing& packing, double tolerance) {
   std::size_t count = 0;
-  for (const VoidTemplate& chosen : templates.choose(plan.spheres, tolerance)) {
+  for (const VoidTemplate& chosen : templates.choose(packing.spheres, tolerance)) {
     count += chosen.triangle_count();
   }
   return count;
@@ -19,38 +19,40 @@ std::size_t count_triangles(VoidTemplates& templates, const VoidPlan& plan, doub
 
 }  // namespace
 
-Solid carve_keeping_surface(Mesh outer, const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) {
+Solid carve_keeping_surface(Mesh outer, const Packing& packing, const CarveOptions& options,
+                            Monitor& monitor) {
   monitor.check_interrupted();
-  VoidTemplates templates(plan.roof);
-  const std::vector<VoidTemplate> chosen = templates.choose(plan.spheres, options.tolerance);
+  VoidTemplates templates(packing.limits.roof);
+  const std::vector<VoidTemplate> chosen = templates.choose(packing.spheres, options.tolerance);
   monitor.check_interrupted();
-  return assemble(std::move(outer), plan, chosen);
+  return assemble(std::move(outer), packing, chosen);
 }
 
-double most_void_triangles(const VoidPlan& plan, const CarveOptions& options) {
+double most_void_triangles(const Packing& packing, const CarveOptions& options) {
   // Of a ball up to 1.8 times 4.84 radii over the tolerance, and 108 at least (docs/benchmarks.md); the
   // circle of a roof with its cone and top takes more where that is small.
   constexpr double kLeast = 400, kPerRadius = 20;
   double count = 0;
-  for (const Sphere& sphere : plan.spheres) count += kLeast + kPerRadius * sphere.radius / options.tolerance;
+  for (const Sphere& sphere : packing.spheres)
+    count += kLeast + kPerRadius * sphere.radius / options.tolerance;
   return count;
 }
 
-std::size_t estimate_void_triangles(const VoidPlan& plan, const CarveOptions& options) {
-  VoidTemplates templates(plan.roof);
-  return count_triangles(templates, plan, options.tolerance);
+std::size_t estimate_void_triangles(const Packing& packing, const CarveOptions& options) {
+  VoidTemplates templates(packing.limits.roof);
+  return count_triangles(templates, packing, options.tolerance);
 }
 
-std::optional<double> loosen_tolerance(const VoidPlan& plan, const CarveOptions& options,
+std::optional<double> loosen_tolerance(const Packing& packing, const CarveOptions& options,
                                        std::size_t max_triangles) {
-  VoidTemplates templates(plan.roof);
+  VoidTemplates templates(packing.limits.roof);
   const auto fits = [&](double tolerance) {
-    return count_triangles(templates, plan, tolerance) <= max_triangles;
+    return count_triangles(templates, packing, tolerance) <= max_triangles;
   };
   // At a tolerance of its radius a void has its coarsest surface. Coarse levels are tried first, so that none
   // is made that is finer than needed.
   double coarse = options.tolerance;
-  for (const Sphere& ball : plan.spheres) coarse = std::max(coarse, ball.radius);
+  for (const Sphere& ball : packing.spheres) coarse = std::max(coarse, ball.radius);
   if (!fits(coarse)) return std::nullopt;
   double fine = coarse;
   while (fine > options.tolerance) {

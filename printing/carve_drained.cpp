@@ -111,32 +111,36 @@ constexpr std::uint32_t kOnTop = std::numeric_limits<std::uint32_t>::max();  // 
 
 class DrainedCarver {
  public:
-  DrainedCarver(std::span<const Sphere> balls, const DrainagePlan& plan, double tolerance, Monitor& monitor)
-      : balls_(balls), plan_(plan), tolerance_(tolerance), monitor_(monitor), parts_(balls.size()) {
+  DrainedCarver(const Packing& packing, const DrainagePlan& plan, double tolerance, Monitor& monitor)
+      : balls_(packing.spheres),
+        roof_(packing.limits.roof),
+        plan_(plan),
+        tolerance_(tolerance),
+        monitor_(monitor),
+        parts_(balls_.size()) {
     for (const Channel& channel : plan.channels) thinnest_ = std::min(thinnest_, channel.tube.radius);
     for (const EscapeHole& hole : plan.holes) thinnest_ = std::min(thinnest_, hole.tube.radius);
     for (const Channel& channel : plan.channels) add_channel_openings(channel);
     for (const EscapeHole& hole : plan.holes)
       hole_rings_.push_back(
           add_opening(hole.from, hole.tube, TubeEnd::start, sides_of(hole.tube, tolerance_)));
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-      if (plan.roof.shapes(balls[i].radius))
-        parts_[i].openings.push_back(shoulder_of(balls[i], plan.roof, sides_above(i)));
+    for (std::size_t i = 0; i < balls_.size(); ++i) {
+      if (roof_.shapes(balls_[i].radius))
+        parts_[i].openings.push_back(shoulder_of(balls_[i], roof_, sides_above(i)));
     }
   }
 
-  DrainedSolid carve(OuterWithHoles outer) {
+  Solid carve(OuterWithHoles outer) {
     open_balls();
-    solid_.kept_triangle_count = outer.kept_triangle_count;
-    solid_.outer_triangle_count = outer.mesh.triangles.size();
-    solid_.cut_triangles = std::move(outer.cut_triangles);
     solid_.mesh = std::move(outer.mesh);
+    solid_.parts.push_back({PartKind::outer, 0, outer.kept_triangle_count});
+    solid_.close_part(PartKind::remnant);
     for (Part& part : parts_) {
       part.first_vertex = static_cast<std::uint32_t>(solid_.mesh.positions.size());
       for (const Vec3d p : part.surface.positions) solid_.mesh.positions.push_back(to_float(p));
       for (const Triangle& t : part.surface.triangles)
         add({t[0] + part.first_vertex, t[2] + part.first_vertex, t[1] + part.first_vertex});
-      solid_.void_ends.push_back(solid_.mesh.triangles.size());
+      solid_.close_part(PartKind::void_surface);
     }
     for (std::size_t i = 0; i < plan_.channels.size(); ++i) add_channel(i);
     for (std::size_t i = 0; i < plan_.holes.size(); ++i) add_hole(hole_rings_[i], outer.holes[i]);
@@ -148,7 +152,7 @@ class DrainedCarver {
   RingPlace add_opening(std::uint32_t ball, const Tube& tube, TubeEnd end, std::size_t sides) {
     Part& part = parts_[ball];
     const RingPlace place{ball, static_cast<std::uint32_t>(part.ring_vertex_count())};
-    part.openings.push_back(opening_of(tube, end, balls_[ball], plan_.roof, sides));
+    part.openings.push_back(opening_of(tube, end, balls_[ball], roof_, sides));
     return place;
   }
 
@@ -156,7 +160,7 @@ class DrainedCarver {
     const Tube& tube = channel.tube;
     std::size_t sides = sides_of(tube, tolerance_);
     RingPlace start{channel.from, kOnTop};
-    if (VoidShape(balls_[channel.from], plan_.roof).comes_out_of_top(tube)) {
+    if (VoidShape(balls_[channel.from], roof_).comes_out_of_top(tube)) {
       parts_[channel.from].out_of_top = tube;
       sides = sides_above(channel.from);
     } else {
@@ -168,18 +172,18 @@ class DrainedCarver {
 
   // Sides of a roof's cone, and of the tube that comes out of it.
   std::size_t sides_above(std::size_t ball) const {
-    const std::size_t sides = shoulder_sides(balls_[ball], plan_.roof, thinnest_, tolerance_);
+    const std::size_t sides = shoulder_sides(balls_[ball], roof_, thinnest_, tolerance_);
     const auto& tube = parts_[ball].out_of_top;
     return tube ? std::max(sides, sides_of(*tube, tolerance_)) : sides;
   }
 
   // Opens a ball and puts its roof on. False if that takes a finer template.
   bool make_surface(Part& part, const Sphere& ball, const StarTriangulation& whole) const {
-    auto opened = open_ball(shrunk(plan_.roof, ball), whole, part.openings);
-    if (!opened || opened->nearest < ball.radius - tolerance_ + void_rounding_margin(plan_.roof, ball))
+    auto opened = open_ball(shrunk(roof_, ball), whole, part.openings);
+    if (!opened || opened->nearest < ball.radius - tolerance_ + void_rounding_margin(roof_, ball))
       return false;
     part.surface = std::move(*opened);
-    if (plan_.roof.shapes(ball.radius)) close_above(part, ball, plan_.roof, tolerance_);
+    if (roof_.shapes(ball.radius)) close_above(part, ball, roof_, tolerance_);
     return faces_outward_when_rounded(part.surface, ball.centre);
   }
 
@@ -239,7 +243,7 @@ class DrainedCarver {
       add({a + next, a + i, b + sides - 1 - i});
       add({a + next, b + sides - 1 - i, b + sides - 1 - next});
     }
-    solid_.channel_ends.push_back(solid_.mesh.triangles.size());
+    solid_.close_part(PartKind::channel);
   }
 
   void add_hole(const RingPlace& ring, const OuterWithHoles::Hole& hole) {
@@ -250,7 +254,7 @@ class DrainedCarver {
       }
       add(t);
     }
-    solid_.hole_ends.push_back(solid_.mesh.triangles.size());
+    solid_.close_part(PartKind::hole);
   }
 
   void drop_unused_vertices() {
@@ -276,6 +280,7 @@ class DrainedCarver {
     std::uint32_t sides;
   };
   std::span<const Sphere> balls_;
+  const Roof& roof_;
   const DrainagePlan& plan_;
   double tolerance_;
   Monitor& monitor_;
@@ -283,23 +288,23 @@ class DrainedCarver {
   std::vector<Part> parts_;
   std::vector<RingPair> channel_rings_;
   std::vector<RingPlace> hole_rings_;
-  DrainedSolid solid_;
+  Solid solid_;
 };
 
 }  // namespace
 
-DrainedSolid carve_drained(OuterWithHoles outer, std::span<const Sphere> balls, const DrainagePlan& plan,
-                           Monitor& monitor) {
-  DrainedCarver carver(balls, plan, outer.tolerance, monitor);
+Solid carve_drained(OuterWithHoles outer, const Packing& packing, const DrainagePlan& plan,
+                    Monitor& monitor) {
+  DrainedCarver carver(packing, plan, outer.tolerance, monitor);
   return carver.carve(std::move(outer));
 }
 
-DrainedSolid carve_drained(const Mesh& outer, std::span<const Sphere> balls, const DrainagePlan& plan,
-                           const CarveOptions& options, Monitor& monitor) {
-  auto cut = cut_holes(outer, outer, balls, plan, options, monitor);
+Solid carve_drained(const Mesh& outer, const SurfaceIndex& surface, const Packing& packing,
+                    const DrainagePlan& plan, const CarveOptions& options, Monitor& monitor) {
+  auto cut = cut_holes(outer, surface, packing, plan, options, monitor);
   if (const auto* uncut = std::get_if<UncutHoles>(&cut))
     throw cannot_be_cut(plan.holes[uncut->indices.front()]);
-  return carve_drained(std::move(std::get<OuterWithHoles>(cut)), balls, plan, monitor);
+  return carve_drained(std::move(std::get<OuterWithHoles>(cut)), packing, plan, monitor);
 }
 
 }  // namespace aerate

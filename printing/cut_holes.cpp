@@ -82,19 +82,16 @@ class SurfaceInWork {
     for (const std::uint32_t t : cut.removed) is_removed_[t] = true;
   }
 
-  // Takes away what was cut away; returns which triangles of the whole surface that is, ascending.
-  std::vector<std::uint32_t> finish() {
-    std::vector<std::uint32_t> cut_triangles;
-    std::size_t kept = 0;
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (!is_removed_[t]) {
-        mesh_.triangles[kept++] = mesh_.triangles[t];
-      } else if (t < whole_.triangles.size()) {
-        cut_triangles.push_back(t);
-      }
+  // Takes away what was cut away; returns how many triangles of the whole surface are kept.
+  std::size_t finish() {
+    std::size_t left = 0, kept = 0;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (is_removed_[t]) continue;
+      if (t < whole_.triangles.size()) ++kept;
+      mesh_.triangles[left++] = mesh_.triangles[t];
     }
-    mesh_.triangles.resize(kept);
-    return cut_triangles;
+    mesh_.triangles.resize(left);
+    return kept;
   }
 
  private:
@@ -119,11 +116,12 @@ FailureError cannot_be_cut(const EscapeHole& hole) {
 }
 
 std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, const SurfaceIndex& surface,
-                                                   std::span<const Sphere> balls, const DrainagePlan& plan,
+                                                   const Packing& packing, const DrainagePlan& plan,
                                                    const CarveOptions& options, Monitor& monitor) {
   std::vector<CuttingPrism> prisms;
   for (const EscapeHole& hole : plan.holes)
-    prisms.push_back(prism_of({hole.tube, balls[hole.from]}, plan.roof, options.tolerance));
+    prisms.push_back(
+        prism_of({hole.tube, packing.spheres[hole.from]}, packing.limits.roof, options.tolerance));
   // Few holes meet the same triangles, and the others do not depend on each other.
   std::vector<LoneCut> lone(prisms.size());
   tbb::parallel_for(std::size_t{0}, prisms.size(), [&](std::size_t i) {
@@ -145,8 +143,7 @@ std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, const Surf
     result.holes.push_back({std::move(cut->sides), result.mesh.positions.size(), std::move(prisms[i].ring)});
   }
   if (!uncut.indices.empty()) return uncut;
-  result.cut_triangles = work.finish();
-  result.kept_triangle_count = outer.triangles.size() - result.cut_triangles.size();
+  result.kept_triangle_count = work.finish();
   return result;
 }
 

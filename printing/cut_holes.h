@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
+#include "core/packing.h"
 #include "core/surface_index.h"
 #include "kernels/roof.h"
 #include "printing/carve.h"
@@ -36,9 +37,8 @@ struct OuterWithHoles {
   };
   Mesh mesh;  // the triangles that were kept, in their order; then what is left of those that were cut
   std::size_t kept_triangle_count = 0;
-  std::vector<std::uint32_t> cut_triangles;  // of the model, ascending
-  std::vector<Hole> holes;                   // in the plan's order
-  double tolerance = 0;                      // of the sides, mm
+  std::vector<Hole> holes;  // in the plan's order
+  double tolerance = 0;     // of the sides, mm
 };
 
 // The holes, by index, for which a surface cannot be cut after it was cut for those before them.
@@ -50,7 +50,7 @@ FailureError cannot_be_cut(const EscapeHole& hole);
 // Cuts a surface, given with its index, around the escape holes of a plan alone (cut_surface.h), as if for
 // one after the other, so that two may meet the same triangle. Throws InterruptedError.
 std::variant<OuterWithHoles, UncutHoles> cut_holes(const Mesh& outer, const SurfaceIndex& surface,
-                                                   std::span<const Sphere> balls, const DrainagePlan& plan,
+                                                   const Packing& packing, const DrainagePlan& plan,
                                                    const CarveOptions& options, Monitor& monitor);
 
 }  // namespace aerate

@@ -133,14 +133,14 @@ FailureError too_much_memory(const Mesh& mesh, double voxel_size, double bytes, 
                                      : std::string("use a model of fewer triangles"));
 }
 
-FailureError too_small_for_voxels(const VoidPlan& plan, double voxel_size) {
+FailureError too_small_for_voxels(const Packing& packing, double voxel_size) {
   double smallest = std::numeric_limits<double>::max();
   std::size_t count = 0;
-  for (const Sphere& sphere : plan.spheres) {
+  for (const Sphere& sphere : packing.spheres) {
     smallest = std::min(smallest, sphere.radius);
     if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size) ++count;
   }
-  return FailureError(std::to_string(count) + " of " + std::to_string(plan.spheres.size()) +
+  return FailureError(std::to_string(count) + " of " + std::to_string(packing.spheres.size()) +
                           " voids are too small for a voxel size of " + to_text(voxel_size) +
                           " mm: the smallest has a radius of " + to_text(smallest) + " mm",
                       "use --voxel " + to_text(rounded_down(smallest / kSmallestVoidRadiusVoxels)) +
@@ -148,14 +148,14 @@ FailureError too_small_for_voxels(const VoidPlan& plan, double voxel_size) {
 }
 
 // The void of sphere `lost` has no shell of its own.
-FailureError runs_together(const VoidPlan& plan, std::size_t lost, double voxel_size) {
-  const Sphere& sphere = plan.spheres[lost];
+FailureError runs_together(const Packing& packing, std::size_t lost, double voxel_size) {
+  const Sphere& sphere = packing.spheres[lost];
   double gap = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < plan.spheres.size(); ++i) {
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
     if (i == lost) continue;
-    const Sphere& other = plan.spheres[i];
-    gap = std::min(
-        gap, kernels::distance_between(plan.roof, sphere.centre, sphere.radius, other.centre, other.radius));
+    const Sphere& other = packing.spheres[i];
+    gap = std::min(gap, kernels::distance_between(packing.limits.roof, sphere.centre, sphere.radius,
+                                                  other.centre, other.radius));
   }
   const bool neighbour_is_near = gap < 2 * voxel_size;
   const double voxel_wanted = neighbour_is_near ? std::max(gap, 0.0) / 2 : voxel_size / 2;
@@ -215,16 +215,17 @@ Mesh ModelLevelSet::surface() const {
   return impl_->surface;
 }
 
-Solid ModelLevelSet::subtract(const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) const {
+Solid ModelLevelSet::subtract(const Packing& packing, const CarveOptions& options, Monitor& monitor) const {
   const double voxel_size = impl_->voxel_size;
-  for (const Sphere& sphere : plan.spheres) {
-    if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size) throw too_small_for_voxels(plan, voxel_size);
+  for (const Sphere& sphere : packing.spheres) {
+    if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size)
+      throw too_small_for_voxels(packing, voxel_size);
   }
 
   std::vector<std::vector<Sphere>> balls_by_void;
   std::vector<Sphere> balls;
-  for (const Sphere& sphere : plan.spheres) {
-    balls_by_void.push_back(balls_of(sphere, plan.roof, voxel_size));
+  for (const Sphere& sphere : packing.spheres) {
+    balls_by_void.push_back(balls_of(sphere, packing.limits.roof, voxel_size));
     balls.insert(balls.end(), balls_by_void.back().begin(), balls_by_void.back().end());
   }
   std::vector<VoidShell> shells;
@@ -244,10 +245,10 @@ Solid ModelLevelSet::subtract(const VoidPlan& plan, const CarveOptions& options,
 
   const std::vector<const VoidShell*> found = find_shells(balls_by_void, shells, voxel_size);
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i] == nullptr) throw runs_together(plan, i, voxel_size);
+    if (found[i] == nullptr) throw runs_together(packing, i, voxel_size);
   }
 
-  return carve_keeping_surface(impl_->surface, plan, options, monitor);
+  return carve_keeping_surface(impl_->surface, packing, options, monitor);
 }
 
 }  // namespace aerate

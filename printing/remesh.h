@@ -5,8 +5,8 @@
 
 #include "core/mesh.h"
 #include "core/monitor.h"
+#include "core/packing.h"
 #include "core/solid.h"
-#include "core/void_plan.h"
 #include "printing/carve.h"
 
 namespace aerate {
@@ -43,7 +43,7 @@ class ModelLevelSet {
   // Throws FailureError, naming the voxel size that would do, for a sphere that the voxels cannot hold and
   // for voids that run together or into the surface at this voxel size; as `carve_keeping_surface`;
   // InterruptedError.
-  Solid subtract(const VoidPlan& plan, const CarveOptions& options, Monitor& monitor) const;
+  Solid subtract(const Packing& packing, const CarveOptions& options, Monitor& monitor) const;
 
  private:
   struct Impl;

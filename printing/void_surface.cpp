@@ -38,13 +38,14 @@ double volume_share(const CutBall& cut, const Roof& roof, double radius) {
   return (cut.volume * radius * radius * radius + of_circle * above) / void_volume(roof, radius);
 }
 
-// Writes vertices and triangles of one void into its range of a mesh, turned inside out.
+// Writes the vertices and triangles of one void into a mesh, from the first that are its own, turned inside
+// out.
 class Placement {
  public:
-  Placement(const ShellRange& range, Mesh& mesh)
-      : first_(static_cast<std::uint32_t>(range.first_vertex)),
-        position_(mesh.positions.data() + range.first_vertex),
-        triangle_(mesh.triangles.data() + range.first_triangle) {}
+  Placement(std::size_t first_vertex, std::size_t first_triangle, Mesh& mesh)
+      : first_(static_cast<std::uint32_t>(first_vertex)),
+        position_(mesh.positions.data() + first_vertex),
+        triangle_(mesh.triangles.data() + first_triangle) {}
 
   void vertex(Vec3d p) { *position_++ = to_float(p); }
   // Counter-clockwise as seen from outside the void.
@@ -150,34 +151,33 @@ const CutBall* VoidTemplates::cut(std::size_t level) {
   return made ? &*made : nullptr;
 }
 
-Solid assemble(Mesh outer, const VoidPlan& plan, std::span<const VoidTemplate> templates) {
-  assert(plan.spheres.size() == templates.size());
+Solid assemble(Mesh outer, const Packing& packing, std::span<const VoidTemplate> templates) {
+  assert(packing.spheres.size() == templates.size());
   Solid solid;
-  solid.outer_triangle_count = outer.triangles.size();
-  solid.outer_vertex_count = outer.positions.size();
-  solid.void_shells.reserve(templates.size());
-  ShellRange range{solid.outer_triangle_count, 0, solid.outer_vertex_count, 0};
+  solid.parts.reserve(1 + templates.size());
+  solid.parts.push_back({PartKind::outer, 0, outer.triangles.size()});
+  std::vector<std::size_t> first_vertices{outer.positions.size()};  // of the voids, and the end
+  first_vertices.reserve(1 + templates.size());
   for (const VoidTemplate& chosen : templates) {
-    range.triangle_count = chosen.triangle_count();
-    range.vertex_count = chosen.vertex_count();
-    solid.void_shells.push_back(range);
-    range.first_triangle += range.triangle_count;
-    range.first_vertex += range.vertex_count;
+    solid.parts.push_back({PartKind::void_surface, solid.parts.back().end(), chosen.triangle_count()});
+    first_vertices.push_back(first_vertices.back() + chosen.vertex_count());
   }
-  if (range.first_vertex > std::numeric_limits<std::uint32_t>::max()) {
-    throw FailureError("the voids would take " + std::to_string(range.first_triangle) + " triangles",
+  const std::size_t triangle_count = solid.parts.back().end();
+  if (first_vertices.back() > std::numeric_limits<std::uint32_t>::max()) {
+    throw FailureError("the voids would take " + std::to_string(triangle_count) + " triangles",
                        "raise --tolerance, or set --max-triangles");
   }
 
   solid.mesh = std::move(outer);
-  solid.mesh.positions.resize(range.first_vertex);
-  solid.mesh.triangles.resize(range.first_triangle);
+  solid.mesh.positions.resize(first_vertices.back());
+  solid.mesh.triangles.resize(triangle_count);
+  const std::span<const SolidPart> voids = solid.of(PartKind::void_surface);
   tbb::parallel_for(std::size_t{0}, templates.size(), [&](std::size_t i) {
-    const Placement place(solid.void_shells[i], solid.mesh);
+    const Placement place(first_vertices[i], voids[i].first_triangle, solid.mesh);
     if (templates[i].ball != nullptr) {
-      place_ball(*templates[i].ball, plan.spheres[i], place);
+      place_ball(*templates[i].ball, packing.spheres[i], place);
     } else {
-      place_cut_ball(templates[i], plan.spheres[i], plan.roof, place);
+      place_cut_ball(templates[i], packing.spheres[i], packing.limits.roof, place);
     }
   });
   return solid;

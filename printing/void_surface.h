@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "core/packing.h"
 #include "core/solid.h"
-#include "core/void_plan.h"
 #include "printing/ball_template.h"
 #include "printing/cut_ball.h"
 #include "printing/roof_top.h"
@@ -25,7 +25,7 @@ struct VoidTemplate {
   std::size_t triangle_count() const;
 };
 
-// Templates for the voids of a plan, each made when it is first asked for.
+// Templates for the voids of a packing, each made when it is first asked for.
 class VoidTemplates {
  public:
   explicit VoidTemplates(const Roof& roof);
@@ -46,8 +46,8 @@ class VoidTemplates {
   std::vector<std::unique_ptr<Cut>> cuts_;  // by level of the ladder
 };
 
-// The outer surface and those of the plan's voids, facing inward, by a template for each. All of a void's
+// The outer surface and those of the packing's voids, facing inward, by a template for each. All of a void's
 // surface lies within its planned shape. Throws FailureError for more vertices than 32 bits can count.
-Solid assemble(Mesh outer, const VoidPlan& plan, std::span<const VoidTemplate> templates);
+Solid assemble(Mesh outer, const Packing& packing, std::span<const VoidTemplate> templates);
 
 }  // namespace aerate

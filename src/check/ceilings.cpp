@@ -19,7 +19,6 @@ namespace aerate {
 namespace {
 
 constexpr double kPrecision = 1e-3;  // of a disc's diameter, mm
-constexpr std::size_t kVoidsPerPiece = 4096;
 
 struct Point {
   double x, y;
@@ -168,18 +167,16 @@ double largest_disc(const Ceiling& ceiling, double known) {
 
 }  // namespace
 
-Ceilings measure_ceilings(const Mesh& mesh, std::span<const ShellRange> shells, const Roof& roof,
+Ceilings measure_ceilings(const Mesh& mesh, std::span<const SolidPart> parts, const Roof& roof,
                           Monitor& monitor) {
   const Flatness flatness(roof);
   const UprightFrame frame(roof.up);
-  std::vector<std::vector<Ceiling>> by_void(shells.size());
-  for_each_polled(shells.size(), kVoidsPerPiece, monitor, [&](std::size_t i) {
-    by_void[i] = ceilings_of(
-        mesh, std::span(mesh.triangles).subspan(shells[i].first_triangle, shells[i].triangle_count), flatness,
-        frame);
+  std::vector<std::vector<Ceiling>> by_part(parts.size());
+  for_each_polled(parts.size(), kVoidsPerPiece, monitor, [&](std::size_t i) {
+    by_part[i] = ceilings_of(mesh, triangles_of(mesh, parts[i]), flatness, frame);
   });
   std::vector<const Ceiling*> ceilings;
-  for (const std::vector<Ceiling>& own : by_void)
+  for (const std::vector<Ceiling>& own : by_part)
     for (const Ceiling& ceiling : own) ceilings.push_back(&ceiling);
   // The largest first: few of the others can be wider.
   std::stable_sort(ceilings.begin(), ceilings.end(),

@@ -22,9 +22,9 @@ struct Ceilings {
   double widest = 0;  // mm
 };
 
-// Of shells that face inward. O(triangles log triangles), on all threads; the same for any number of them.
-// Throws InterruptedError.
-Ceilings measure_ceilings(const Mesh& mesh, std::span<const ShellRange> shells, const Roof& roof,
+// Of parts that face into voids; no ceiling reaches from one into another. O(triangles log triangles), on all
+// threads; the same for any number of them. Throws InterruptedError.
+Ceilings measure_ceilings(const Mesh& mesh, std::span<const SolidPart> parts, const Roof& roof,
                           Monitor& monitor);
 
 // Throws FailureError if a ceiling is wider than the bridge by more than `tolerance` mm.

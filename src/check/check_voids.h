@@ -2,27 +2,26 @@
 
 #include <vector>
 
+#include "check/expected.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
-#include "core/solid.h"
-#include "core/void_plan.h"
+#include "kernels/sphere.h"
 
 namespace aerate {
 
 // One void as it was written.
 struct MeasuredVoid {
   Sphere ball;                  // round the planned centre; with the roof it takes, it holds every vertex
-  double volume = 0;            // mm3
   double depth = 0;             // how far the surface stays inside the planned shape at most, mm
+  bool faces_centre = true;     // every triangle does
+  double volume = 0;            // seen from the centre, mm3: of a sealed void its own
   Vec3d first_moment{0, 0, 0};  // volume integral of position, mm4
 };
 
-// Checks the void shells of a mesh that was read back, whose vertices are numbered in order of first use and
-// whose triangles are those of `solid`: one after another to the last triangle, each of them closed,
-// 2-manifold, a topological sphere, inward, with no vertex of another shell, and within [-tolerance, 0] of
-// its planned shape (ball and roof), its volume too. In the order of the plan. O(triangles), on all threads.
-// Throws FailureError for the first that is not so; InterruptedError.
-std::vector<MeasuredVoid> check_voids(const Mesh& mesh, const Solid& solid, const VoidPlan& plan,
-                                      double tolerance, Monitor& monitor);
+// Checks the voids of a mesh that was read back: each lies within [-tolerance, 0] of its planned shape (ball
+// and roof). A sealed one has a volume to match; every triangle of one that drains faces its centre. In the
+// order of the plan. O(triangles), on all threads. Throws FailureError for the first that is not so;
+// InterruptedError.
+std::vector<MeasuredVoid> check_voids(const Mesh& read_back, const Expected& expected, Monitor& monitor);
 
 }  // namespace aerate

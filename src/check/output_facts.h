@@ -11,6 +11,14 @@ namespace aerate {
 
 enum class OuterSurface { kept, remeshed };
 
+// How voids were found to drain.
+struct MeasuredDrainage {
+  std::size_t sealed_cavities = 0;    // inner surfaces that no way joins to the outside
+  std::size_t cavities_of_model = 0;  // inward shells that the model has itself, left as they are
+  std::size_t cut_triangles = 0;      // of the model's, where holes come out; all others are as they were
+  double channel_wall = 0;            // lower bound of what is between channels and the surface, mm
+};
+
 // What was read back from the written file, and measured there. Lengths in mm, volumes in mm3.
 struct OutputFacts {
   std::size_t triangle_count = 0;
@@ -35,6 +43,9 @@ struct OutputFacts {
   // Voids that were given a roof, and the ceilings of all; absent where ceilings are not limited.
   std::size_t roof_count = 0;
   std::optional<Ceilings> ceilings;
+
+  // Absent where each void is sealed.
+  std::optional<MeasuredDrainage> drainage;
 
   // Absent where parts of the model overlap: the surface integral would count the overlap twice.
   std::optional<Vec3d> centre_of_mass_before;

@@ -8,6 +8,9 @@
 
 namespace aerate {
 
+// Voids between two questions to the monitor: about ten million triangles at the very most.
+inline constexpr std::size_t kVoidsPerPiece = 4096;
+
 // Calls f(i) for every i < count, in any order on all threads, and asks the monitor between pieces of
 // `per_piece`. f must not throw: which of several exceptions came first would depend on threads.
 template <typename F>

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kTrianglesPerPiece = std::size_t{1} << 22;
 
 // The first of the triangles `first`..`last`-1 that differs; `last` if none does.
-std::size_t find_difference(const Mesh& a, const Mesh& b, std::size_t first, std::size_t last) {
+std::size_t difference_among(const Mesh& a, const Mesh& b, std::size_t first, std::size_t last) {
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(first, last), last,
       [&](const tbb::blocked_range<std::size_t>& range, std::size_t found) {
@@ -33,17 +33,24 @@ bool has_same_corners(const Mesh& a, std::size_t i, const Mesh& b, std::size_t j
   return true;
 }
 
-void require_same_triangles(const Mesh& read_back, const Mesh& reference, const char* what,
-                            Monitor& monitor) {
-  const std::size_t count = reference.triangles.size();
-  if (read_back.triangles.size() < count)
-    fail_check("it has {} triangles instead of {}", read_back.triangles.size(), count);
+std::size_t find_difference(const Mesh& a, const Mesh& b, std::size_t count, Monitor& monitor) {
   for (std::size_t first = 0; first < count; first += kTrianglesPerPiece) {
     monitor.check_interrupted();
     const std::size_t last = std::min(count, first + kTrianglesPerPiece);
-    const std::size_t different = find_difference(read_back, reference, first, last);
-    if (different != last) fail_check("triangle {} is not the one of {}", different, what);
+    const std::size_t different = difference_among(a, b, first, last);
+    if (different != last) return different;
   }
+  return count;
+}
+
+void require_same_triangles(const Mesh& read_back, const Mesh& written, Monitor& monitor) {
+  const std::size_t count = written.triangles.size();
+  if (read_back.triangles.size() < count)
+    fail_check("it has {} triangles instead of {}", read_back.triangles.size(), count);
+  if (read_back.triangles.size() > count)
+    fail_check("it has {} triangles too many", read_back.triangles.size() - count);
+  const std::size_t different = find_difference(read_back, written, count, monitor);
+  if (different != count) fail_check("triangle {} is not the one of the result", different);
 }
 
 }  // namespace aerate

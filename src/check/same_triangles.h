@@ -11,8 +11,12 @@ namespace aerate {
 // vertices may be numbered differently.
 bool has_same_corners(const Mesh& a, std::size_t i, const Mesh& b, std::size_t j);
 
-// Throws FailureError unless the first triangles of a mesh that was read back are all those of `reference`,
-// which is called `what` in the message; InterruptedError. On all threads.
-void require_same_triangles(const Mesh& read_back, const Mesh& reference, const char* what, Monitor& monitor);
+// The first of `count` triangles that differs between two meshes; `count` if none does. On all threads.
+// Throws InterruptedError.
+std::size_t find_difference(const Mesh& a, const Mesh& b, std::size_t count, Monitor& monitor);
+
+// Throws FailureError unless the triangles of a mesh that was read back are those of `written`;
+// InterruptedError. On all threads.
+void require_same_triangles(const Mesh& read_back, const Mesh& written, Monitor& monitor);
 
 }  // namespace aerate

@@ -147,7 +147,7 @@ Json json_of(const TrappedPools& pools) {
           {"after_both_percent", pools.total > 0 ? 100 * pools.after_both / pools.total : 0}};
 }
 
-Json json_of(const DrainageFacts& drainage) {
+Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
   Json holes = Json::array();
   for (const EscapeHole& hole : drainage.plan.holes) {
     const Vec3d along = hole.tube.end - hole.tube.start;
@@ -160,10 +160,10 @@ Json json_of(const DrainageFacts& drainage) {
           {"networks", drainage.plan.network_count},
           {"channels", drainage.plan.channels.size()},
           {"holes", holes},
-          {"channel_wall_mm", drainage.plan.channels.empty() ? Json(nullptr) : Json(drainage.channel_wall)},
-          {"cut_triangles", drainage.cut_triangles},
-          {"sealed_cavities", drainage.sealed_cavities},
-          {"cavities_of_model", drainage.cavities_of_model},
+          {"channel_wall_mm", drainage.plan.channels.empty() ? Json(nullptr) : Json(measured.channel_wall)},
+          {"cut_triangles", measured.cut_triangles},
+          {"sealed_cavities", measured.sealed_cavities},
+          {"cavities_of_model", measured.cavities_of_model},
           {"pools", json_of(drainage.plan.pools)},
           {"dropped_voids",
            {{"count", drainage.dropped.count()},
@@ -239,7 +239,7 @@ std::string to_json(const HollowReport& report) {
   } else {
     json["ceilings"] = nullptr;
   }
-  json["drainage"] = report.drainage ? json_of(*report.drainage) : Json(nullptr);
+  json["drainage"] = report.drainage ? json_of(*report.drainage, *output.drainage) : Json(nullptr);
   json["volume"] = volume_of(report);
   json["modifiers"] = modifiers_of(report);
   json["centre_of_mass"] = {

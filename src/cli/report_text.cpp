@@ -132,12 +132,12 @@ void add_balance(Lines& lines, const HollowReport& report) {
 
 void add_drainage(Lines& lines, const HollowReport& report) {
   if (!report.drainage) return;
-  const DrainageFacts& drainage = *report.drainage;
+  const DrainedVoids& drainage = *report.drainage;
   const DrainagePlan& plan = drainage.plan;
   lines.add("drainage", "{} of {:g} mm, {} of {:g} mm; {} sealed",
             count_of(plan.channels.size(), "channel", "channels"), 2 * drainage.request.channel_radius,
             count_of(plan.holes.size(), "escape hole", "escape holes"), 2 * drainage.request.hole_radius,
-            count_of(drainage.sealed_cavities, "cavity", "cavities"));
+            count_of(report.output.drainage->sealed_cavities, "cavity", "cavities"));
   std::string places;
   for (const EscapeHole& hole : plan.holes) places += (places.empty() ? "" : ", ") + point(hole.tube.end);
   lines.add("", "holes at {} mm", places);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "kernels/facet.h"
 #include "kernels/vec.h"
 
 namespace aerate {
@@ -19,6 +20,11 @@ struct Mesh {
   std::vector<Vec3f> positions;
   std::vector<Triangle> triangles;
 };
+
+// A triangle of the mesh with its corners at hand.
+inline kernels::Facet facet_of(const Mesh& mesh, const Triangle& t) {
+  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+}
 
 // Smallest box around the positions that triangles use; empty (lower > upper) for a mesh without triangles.
 Box3f bounding_box(const Mesh& mesh);

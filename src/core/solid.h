@@ -1,40 +1,47 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/mesh.h"
 
 namespace aerate {
 
-// Consecutive triangles and vertices of a mesh that form one closed shell.
-struct ShellRange {
+// What a part of a solid's surface bounds.
+enum class PartKind {
+  outer,         // the model outside: its triangles in their order, but for those that holes cut
+  remnant,       // what holes leave of these
+  void_surface,  // one void
+  channel,       // one channel between two voids
+  hole,          // one way out of a void
+};
+
+// Consecutive triangles of a mesh.
+struct SolidPart {
+  PartKind kind = PartKind::outer;
   std::size_t first_triangle = 0;
   std::size_t triangle_count = 0;
-  std::size_t first_vertex = 0;
-  std::size_t vertex_count = 0;
+
+  std::size_t end() const { return first_triangle + triangle_count; }
 };
 
-// A model with voids, ready to write: one mesh that holds the outer surface first (oriented outward, triangle
-// for triangle as given in `keep` mode) and then the void shells (oriented inward, so that their signed
-// volume is negative), one after another.
+// A model with voids, ready to write. Its parts follow each other from the mesh's first triangle to the last,
+// by kind, and of a kind in the order of the plan. What is outside faces outward; voids, channels and holes
+// face into what they bound, so that the signed volume of a sealed void is negative.
 struct Solid {
   Mesh mesh;
-  std::size_t outer_triangle_count = 0;
-  std::size_t outer_vertex_count = 0;
-  std::vector<ShellRange> void_shells;  // void_shells[i] is the surface of void i of the plan
+  std::vector<SolidPart> parts;
+
+  // Adds the mesh's triangles after the last part as one more.
+  void close_part(PartKind kind);
+
+  std::span<const SolidPart> of(PartKind kind) const;
+  // Triangles of the outer surface, remnants included: those of voids and tubes come after them.
+  std::size_t outer_triangle_count() const;
 };
 
-// A model whose voids are joined to the outside, so that all of it is one surface. The mesh holds the outer
-// triangles that were kept, in their order; what is left of those that escape holes cut; then for each void,
-// each channel and each hole its part of the inner surface, facing into the void.
-struct DrainedSolid {
-  Mesh mesh;
-  std::vector<std::uint32_t> cut_triangles;  // of the model, ascending: those that are not in the mesh
-  std::size_t kept_triangle_count = 0;
-  std::size_t outer_triangle_count = 0;                         // with what is left of the cut ones
-  std::vector<std::size_t> void_ends, channel_ends, hole_ends;  // index after the last triangle of each
-};
+// The triangles of a part, of the solid's own mesh or of one that was read back.
+std::span<const Triangle> triangles_of(const Mesh& mesh, const SolidPart& part);
 
 }  // namespace aerate

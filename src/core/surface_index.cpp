@@ -53,8 +53,7 @@ std::vector<std::uint32_t> triangles_near(const Mesh& mesh, const Segment& segme
   const Box box = box_round(segment, reach);
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& t = mesh.triangles[i];
-    const kernels::Facet facet{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+    const kernels::Facet facet = facet_of(mesh, mesh.triangles[i]);
     if (box.meets(kernels::box_of(facet)) && distance_to_facet(segment, facet) < reach) found.push_back(i);
   }
   return found;

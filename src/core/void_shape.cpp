@@ -5,6 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "kernels/point_triangle.h"
+#include "kernels/roof_distance.h"
+
 namespace aerate {
 namespace {
 
@@ -107,6 +110,26 @@ bool VoidShape::is_farther_than(double distance, const Segment& segment) const {
   const double spine = reach_beyond_ball();
   if (from_ball < distance || spine == 0) return from_ball >= distance;
   return from_ball >= distance + spine || distance_to(segment) >= distance;
+}
+
+double VoidShape::least_radius_holding(Vec3d p) const {
+  const double with_roof = has_roof() ? aerate::least_radius_holding(roof_, ball_.centre, p) : 0;
+  return roof_.shapes(with_roof) ? with_roof : length(p - ball_.centre);
+}
+
+double VoidShape::depth(const kernels::Facet& facet) const {
+  if (!has_roof()) return ball_.radius - std::sqrt(kernels::distance_squared_to_facet(ball_.centre, facet));
+  double lowest = roof_.top(ball_.radius);
+  for (int i = 0; i < 3; ++i)
+    lowest = std::min(lowest, dot(to_double(facet.corner(i)) - ball_.centre, roof_.up));
+  return std::min(roof_.top(ball_.radius) - lowest,
+                  kernels::lateral_depth(roof_, ball_.centre, ball_.radius, facet));
+}
+
+double VoidShape::volume_within(double tolerance) const {
+  const double nearest = std::min(ball_.radius, roof_.top(ball_.radius));
+  const double scale = std::max(0.0, 1 - tolerance / nearest);
+  return volume() * scale * scale * scale;
 }
 
 // The lines nearest to and farthest from the centre are those towards and away from it.

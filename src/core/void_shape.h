@@ -51,6 +51,14 @@ class VoidShape {
   double distance_to(const Segment& segment) const;
   bool is_farther_than(double distance, const Segment& segment) const;
 
+  // The least radius with which the void, with the roof that it then takes, holds a point.
+  double least_radius_holding(Vec3d p) const;
+  // How deep inside the void a facet lies at its deepest; where there is a roof, at most.
+  double depth(const kernels::Facet& facet) const;
+  // The least volume where the surface is up to `tolerance` inside: of the void scaled about its centre,
+  // which is that far from its nearest side.
+  double volume_within(double tolerance) const;
+
   // Is it wide enough for tubes of this radius?
   bool takes_tube(double radius) const { return radius <= kWidestTubeShare * ball_.radius; }
 

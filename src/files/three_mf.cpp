@@ -374,17 +374,15 @@ std::string to_3mf(const Mesh& mesh, const std::vector<ThreeMfPart>& parts, Thre
 }
 
 Mesh with_void_shells_turned(Mesh mesh, const Solid& solid) {
-  for (const ShellRange& shell : solid.void_shells) {
-    for (std::size_t i = shell.first_triangle; i < shell.first_triangle + shell.triangle_count; ++i)
-      std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
-  }
+  for (std::size_t i = solid.outer_triangle_count(); i < mesh.triangles.size(); ++i)
+    std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
   return mesh;
 }
 
 std::vector<ThreeMfPart> modifier_parts(const Solid& solid, double infill_percent) {
-  return {{"model", 0, solid.outer_triangle_count, std::nullopt},
-          {"voids", solid.outer_triangle_count, solid.mesh.triangles.size() - solid.outer_triangle_count,
-           infill_percent}};
+  const std::size_t outer = solid.outer_triangle_count();
+  return {{"model", 0, outer, std::nullopt},
+          {"voids", outer, solid.mesh.triangles.size() - outer, infill_percent}};
 }
 
 std::vector<ThreeMfPart> read_3mf_parts(const std::filesystem::path& path, ThreeMfFlavor flavor) {

@@ -59,26 +59,27 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
           "give a larger --max-radius: the number of spheres falls with its cube");
 }
 
-void require_memory_for_voids(const VoidPlan& plan, double tolerance, std::size_t outer_triangles) {
+void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles) {
   const CarveOptions options{.tolerance = tolerance};
-  if (bytes_of_result(most_void_triangles(plan, options), outer_triangles) <= available_memory_bytes())
+  if (bytes_of_result(most_void_triangles(packing, options), outer_triangles) <= available_memory_bytes())
     return;
-  const std::size_t in_voids = estimate_void_triangles(plan, options);
-  require(bytes_of_result(static_cast<double>(in_voids), outer_triangles),
-          fmt::format("a result of {} triangles ({} voids)", outer_triangles + in_voids, plan.spheres.size()),
-          "give a larger --tolerance or --min-radius, or limit it with --max-triangles");
+  const std::size_t in_voids = estimate_void_triangles(packing, options);
+  require(
+      bytes_of_result(static_cast<double>(in_voids), outer_triangles),
+      fmt::format("a result of {} triangles ({} voids)", outer_triangles + in_voids, packing.spheres.size()),
+      "give a larger --tolerance or --min-radius, or limit it with --max-triangles");
 }
 
-double tolerance_for(const VoidPlan& plan, double asked, std::size_t outer_triangles,
+double tolerance_for(const Packing& packing, double asked, std::size_t outer_triangles,
                      std::optional<std::size_t> max_triangles) {
   if (!max_triangles) return asked;
   const std::size_t for_voids = *max_triangles > outer_triangles ? *max_triangles - outer_triangles : 0;
-  const auto loosened = loosen_tolerance(plan, CarveOptions{.tolerance = asked}, for_voids);
+  const auto loosened = loosen_tolerance(packing, CarveOptions{.tolerance = asked}, for_voids);
   if (!loosened) {
     throw UsageError(
         fmt::format("--max-triangles {}: the model has {} triangles of its own, and {} voids take "
                     "more than the {} that are left, however coarse they are",
-                    *max_triangles, outer_triangles, plan.spheres.size(), for_voids),
+                    *max_triangles, outer_triangles, packing.spheres.size(), for_voids),
         "allow more triangles, or give a larger --min-radius for fewer voids");
   }
   return *loosened;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/mesh.h"
-#include "core/void_plan.h"
+#include "core/packing.h"
 #include "mesh/inspect.h"
 #include "pipeline/options.h"
 
@@ -17,11 +17,11 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
 
 // The same for what is made of the packing: the void surfaces, the file and its check. `outer_triangles` is
 // the size of the model's own surface.
-void require_memory_for_voids(const VoidPlan& plan, double tolerance, std::size_t outer_triangles);
+void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles);
 
 // The smallest tolerance, but no smaller than `asked`, with which the result has at most `max_triangles`.
 // Throws UsageError if none does. mm.
-double tolerance_for(const VoidPlan& plan, double asked, std::size_t outer_triangles,
+double tolerance_for(const Packing& packing, double asked, std::size_t outer_triangles,
                      std::optional<std::size_t> max_triangles);
 
 }  // namespace aerate

@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include "check/check_drained.h"
-#include "check/outward_shells.h"
+#include "check/crossings.h"
 #include "core/error.h"
+#include "mesh/outward_shells.h"
 #include "printing/carve_drained.h"
 #include "printing/cut_holes.h"
 #include "printing/tube_openings.h"
@@ -52,7 +52,7 @@ std::string what_would_reach_them(const UndrainedVoids& dropped, const DrainageR
                      2 * request.channel_radius, 2 * request.hole_radius);
 }
 
-void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Monitor& monitor) {
+void tell_what_was_dropped(const DrainedVoids& drainage, std::size_t packed, Monitor& monitor) {
   const UndrainedVoids& dropped = drainage.dropped;
   if (dropped.count() > 0)
     monitor.notice(fmt::format("{} of {} voids ({:.1f} mm3) cannot be drained and are not made: {}{}",
@@ -63,6 +63,12 @@ void tell_what_was_dropped(const DrainageFacts& drainage, std::size_t packed, Mo
     monitor.notice(fmt::format(
         "{:.1f} mm3 ({:.2f} % of the voids) cannot run out, neither in print orientation nor upside down",
         pools.after_both, 100 * pools.after_both / pools.total));
+}
+
+Packing with_only(const Packing& packing, std::span<const std::uint32_t> kept) {
+  Packing part{{}, packing.limits, packing.statistics, packing.device};
+  for (const std::uint32_t i : kept) part.spheres.push_back(packing.spheres[i]);
+  return part;
 }
 
 // Throws FailureError unless fp32 can hold the sides of such a tube anywhere in the model.
@@ -98,57 +104,8 @@ std::vector<std::size_t> failed_holes(const std::variant<OuterWithHoles, UncutHo
   return failed;
 }
 
-}  // namespace
-
-PlannedHoles drain_packing(const PreparedModel& model, const SurfaceIndex& surface, Packing& packing,
-                           const DrainageRequest& request, double tolerance, Monitor& monitor) {
-  require_resolvable(model.mesh, request.channel_radius, tolerance, "a channel");
-  require_resolvable(model.mesh, request.hole_radius, tolerance, "an escape hole");
-  const OutwardShells outward(model.mesh, model.inspection, surface);
-  std::vector<Tube> refused;
-  const auto can_open = [&](const EscapeHole& hole) {
-    const auto is_it = [&](const Tube& tube) {
-      return tube.start == hole.tube.start && tube.end == hole.tube.end;
-    };
-    const WayOut way{hole.tube, packing.spheres[hole.from]};
-    return std::none_of(refused.begin(), refused.end(), is_it) &&
-           may_be_cut(model.mesh, surface, way, packing.limits.roof, tolerance) &&
-           !is_crossed_near(model.mesh, surface, hole.tube);
-  };
-  // Cutting takes longer than all the rest, so it is tried on a whole plan, and places where it fails, which
-  // looked as if it would not, are avoided by the next.
-  while (true) {
-    PlannedDrainage planned =
-        plan_drainage({surface, outward.winding()}, packing, request, can_open, monitor);
-    std::vector<Sphere> kept;
-    for (const std::uint32_t i : planned.kept) kept.push_back(packing.spheres[i]);
-    auto cut = cut_holes(model.mesh, surface, kept, planned.plan, {.tolerance = tolerance}, monitor);
-    const std::vector<std::size_t> failed = failed_holes(cut, planned.plan);
-    if (!failed.empty()) {
-      if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[failed.front()]);
-      for (const std::size_t i : failed) refused.push_back(planned.plan.holes[i].tube);
-      continue;
-    }
-    const std::size_t packed = packing.spheres.size();
-    packing.spheres = std::move(kept);
-    DrainageFacts drainage{.request = request, .plan = std::move(planned.plan), .dropped = planned.dropped};
-    tell_what_was_dropped(drainage, packed, monitor);
-    return {std::move(drainage), std::move(std::get<OuterWithHoles>(cut))};
-  }
-}
-
-void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits) {
-  const auto require = [&](double radius, const char* what, const char* option) {
-    if (radius <= kWidestTubeShare * limits.max_radius) return;
-    throw UsageError(fmt::format("{} of {:g} mm is too wide for every void: none is wider than {:g} mm "
-                                 "(--max-radius {:g})",
-                                 what, 2 * radius, 2 * limits.max_radius, limits.max_radius),
-                     fmt::format("give a smaller {}, or a larger --max-radius", option));
-  };
-  require(request.channel_radius, "a channel", "--channel-diameter");
-  require(request.hole_radius, "an escape hole", "--hole-diameter");
-}
-
+// What the user should know about channels and escape holes that are wider than the printer bridges, if it
+// limits ceilings.
 void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const DrainageRequest& request,
                         Monitor& monitor) {
   if (!roof.limits_ceilings()) return;
@@ -168,30 +125,76 @@ void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const Dra
   tell(request.hole_radius, "escape holes", "--hole-diameter");
 }
 
-DrainedSolid carve_within(const PreparedModel& model, OuterWithHoles outer, const Packing& packing,
-                          const DrainagePlan& plan, double& tolerance,
-                          std::optional<std::size_t> max_triangles, Monitor& monitor) {
+}  // namespace
+
+DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Packing packing,
+                     const ProcessChoice& process, const HollowOptions& options, Monitor& monitor) {
+  if (!options.drainage) return {std::move(packing), std::nullopt, {}};
+  monitor.stage("drain");
+  const DrainageRequest& request = *options.drainage;
+  const double tolerance = options.tolerance;
+  warn_of_wide_tubes(process, packing.limits.roof, request, monitor);
+  require_resolvable(model.mesh, request.channel_radius, tolerance, "a channel");
+  require_resolvable(model.mesh, request.hole_radius, tolerance, "an escape hole");
+  const OutwardShells outward(model.mesh, model.inspection, surface);
+  std::vector<Tube> refused;
+  const auto can_open = [&](const EscapeHole& hole) {
+    const auto is_it = [&](const Tube& tube) {
+      return tube.start == hole.tube.start && tube.end == hole.tube.end;
+    };
+    const WayOut way{hole.tube, packing.spheres[hole.from]};
+    return std::none_of(refused.begin(), refused.end(), is_it) &&
+           may_be_cut(model.mesh, surface, way, packing.limits.roof, tolerance) &&
+           !is_crossed_near(model.mesh, surface, hole.tube);
+  };
+  // Cutting takes longer than all the rest, so it is tried on a whole plan, and places where it fails, which
+  // looked as if it would not, are avoided by the next.
+  while (true) {
+    PlannedDrainage planned =
+        plan_drainage({surface, outward.winding()}, packing, request, can_open, monitor);
+    Packing kept = with_only(packing, planned.kept);
+    auto cut = cut_holes(model.mesh, surface, kept, planned.plan, {.tolerance = tolerance}, monitor);
+    const std::vector<std::size_t> failed = failed_holes(cut, planned.plan);
+    if (failed.empty()) {
+      DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
+      tell_what_was_dropped(voids, packing.spheres.size(), monitor);
+      return {std::move(kept), std::move(voids), std::move(std::get<OuterWithHoles>(cut))};
+    }
+    if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[failed.front()]);
+    for (const std::size_t i : failed) refused.push_back(planned.plan.holes[i].tube);
+  }
+}
+
+void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits) {
+  const auto require = [&](double radius, const char* what, const char* option) {
+    if (radius <= kWidestTubeShare * limits.max_radius) return;
+    throw UsageError(fmt::format("{} of {:g} mm is too wide for every void: none is wider than {:g} mm "
+                                 "(--max-radius {:g})",
+                                 what, 2 * radius, 2 * limits.max_radius, limits.max_radius),
+                     fmt::format("give a smaller {}, or a larger --max-radius", option));
+  };
+  require(request.channel_radius, "a channel", "--channel-diameter");
+  require(request.hole_radius, "an escape hole", "--hole-diameter");
+}
+
+CarvedModel carve_within(const PreparedModel& model, const SurfaceIndex& surface, DrainedPacking& drained,
+                         double tolerance, std::optional<std::size_t> max_triangles, Monitor& monitor) {
+  const Packing& packing = drained.packing;
+  const DrainagePlan& plan = drained.voids->plan;
+  const auto carve_at = [&](double at) {
+    return carve_drained(model.mesh, surface, packing, plan, {.tolerance = at}, monitor);
+  };
   // Cut for another tolerance, its holes have other sides.
-  const bool fits = outer.tolerance == tolerance;
-  DrainedSolid solid =
-      fits ? carve_drained(std::move(outer), packing.spheres, plan, monitor)
-           : carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
+  const bool fits = drained.outer.tolerance == tolerance;
+  Solid solid = fits ? carve_drained(std::move(drained.outer), packing, plan, monitor) : carve_at(tolerance);
   for (int i = 0; i < kMostTries; ++i) {
-    if (!max_triangles || solid.mesh.triangles.size() <= *max_triangles) return solid;
+    if (!max_triangles || solid.mesh.triangles.size() <= *max_triangles) return {std::move(solid), tolerance};
     tolerance *= kLooser;
-    solid = carve_drained(model.mesh, packing.spheres, plan, {.tolerance = tolerance}, monitor);
+    solid = carve_at(tolerance);
   }
   throw UsageError(
       fmt::format("--max-triangles {}: drained voids take more, however coarse they are", *max_triangles),
       "allow more triangles, or give a larger --min-radius for fewer voids");
-}
-
-Solid as_solid(const DrainedSolid& drained) {
-  Solid solid;
-  solid.mesh = drained.mesh;
-  solid.outer_triangle_count = drained.mesh.triangles.size();
-  solid.outer_vertex_count = drained.mesh.positions.size();
-  return solid;
 }
 
 }  // namespace aerate

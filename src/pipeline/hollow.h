@@ -3,9 +3,10 @@
 #include <optional>
 
 #include "core/monitor.h"
+#include "core/packing.h"
 #include "core/solid.h"
 #include "core/surface_index.h"
-#include "core/void_plan.h"
+#include "pipeline/drain.h"
 #include "pipeline/options.h"
 #include "pipeline/prepare.h"
 #include "pipeline/report.h"
@@ -19,12 +20,12 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor);
 
 // A model with its voids, ready to be written in one form or several.
 struct HollowedModel {
-  HollowReport report;  // all but what is measured on the written file, and the stages
-  VoidPlan plan;
+  PackingRequest request;  // what was packed: without voids that would cost more than they save
   PreparedModel model;
-  SurfaceIndex surface;  // of the model
-  Solid solid;
-  std::optional<DrainedSolid> drained;  // what `solid` was made of, if its voids drain
+  SurfaceIndex surface;                  // of the model
+  Packing packing;                       // the voids that are made
+  std::optional<DrainedVoids> drainage;  // absent: each is sealed
+  CarvedModel carved;
 };
 
 // The job's two halves, for who needs several forms. The first writes nothing; the second writes the form

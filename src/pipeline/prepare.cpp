@@ -130,8 +130,7 @@ PreparedModel remesh(PreparedModel model, const SurfacePolicy& policy, Monitor& 
   return model;
 }
 
-}  // namespace
-
+// Voxel edge for remeshing that leaves room for the wall and the gap, mm.
 double default_voxel_size(const PackingLimits& limits, const Box3f& box) {
   const double diagonal = diagonal_of(box);
   double size = diagonal / kFewestVoxelsAlongDiagonal;
@@ -140,6 +139,8 @@ double default_voxel_size(const PackingLimits& limits, const Box3f& box) {
   }
   return std::max(size, diagonal / kMostVoxelsAlongDiagonal);
 }
+
+}  // namespace
 
 PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOptions& options,
                                Monitor& monitor) {
@@ -179,6 +180,13 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
   turn_outward(model, monitor);
   require_solid(model);
   return model;
+}
+
+PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor) {
+  PreparedModel model = load_and_inspect(options.model, options.load, monitor);
+  const double voxel_size =
+      options.voxel_size.value_or(default_voxel_size(options.packing.limits, model.inspection.box));
+  return make_usable(std::move(model), {options.surface, options.max_hole, voxel_size}, monitor);
 }
 
 }  // namespace aerate

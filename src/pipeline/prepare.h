@@ -7,8 +7,8 @@
 #include "core/monitor.h"
 #include "files/load.h"
 #include "mesh/inspect.h"
+#include "pipeline/input_facts.h"
 #include "pipeline/options.h"
-#include "pipeline/report.h"
 #include "printing/remesh.h"
 
 namespace aerate {
@@ -22,9 +22,6 @@ struct PreparedModel {
   std::optional<ModelLevelSet> level_set;
   std::optional<double> outer_deviation;  // see HollowReport
 };
-
-// Voxel edge for remeshing that leaves room for the wall and the gap, mm.
-double default_voxel_size(const PackingLimits& limits, const Box3f& box);
 
 // How the surface may be changed to make the model usable.
 struct SurfacePolicy {
@@ -40,5 +37,8 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
 // Turns what is inside out, and remeshes if the policy says so. Throws MeshError, naming what is wrong and
 // where, for a model that bounds no solid or that the policy does not let mend.
 PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor);
+
+// Both, as `hollow` is asked to. Unless the options say, voxels for remeshing leave room for wall and gap.
+PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate

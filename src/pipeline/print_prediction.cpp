@@ -59,10 +59,6 @@ std::string change_in_words(const PrintPrediction& prediction) {
 
 }  // namespace
 
-bool prints_filament(const HollowOptions& options) {
-  return options.packing.process.process.drainage == Drainage::not_needed;
-}
-
 std::string where_voids_pay(double radius, const PrintSettings& settings) {
   return fmt::format("voids of {:.2g} mm {}; {}", radius, saving_infill(break_even_infill(radius, settings)),
                      kOtherWays);
@@ -93,13 +89,16 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
   return request;
 }
 
-PrintPrediction predict_print(const Mesh& outer, const Solid& solid, const VoidPlan& plan,
-                              const HollowOptions& options, Monitor& monitor) {
+std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
+                                             const HollowOptions& options, Monitor& monitor) {
+  const bool prints_filament = options.packing.process.process.drainage == Drainage::not_needed;
+  if (options.modifiers || !prints_filament) return std::nullopt;
+  monitor.stage("predict");
   PrintPrediction prediction;
   prediction.described = options.print.has_value();
   prediction.settings = options.print.value_or(PrintSettings{});
   const PrintSettings& settings = prediction.settings;
-  const UprightFrame frame(plan.roof.up);
+  const UprightFrame frame(packing.limits.roof.up);
   const auto use_of = [&](const Mesh& mesh) {
     return frame.is_the_models_own() ? filament_use(mesh, settings)
                                      : filament_use(turned_upright(mesh, frame), settings);
@@ -112,7 +111,7 @@ PrintPrediction predict_print(const Mesh& outer, const Solid& solid, const VoidP
   prediction.filament_after_mm3 = hollow.volume_mm3(settings);
   prediction.break_even_infill = break_even_infill(hollow - whole, settings);
   prediction.break_even_radius = break_even_radius(settings);
-  prediction.time = time_change(whole, hollow, plan.spheres, settings);
+  prediction.time = time_change(whole, hollow, packing.spheres, settings);
 
   if (prediction.described && prediction.heavier()) {
     if (options.heavier == HeavierPrint::refuse) {

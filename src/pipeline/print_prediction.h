@@ -4,8 +4,8 @@
 #include <string>
 
 #include "core/monitor.h"
+#include "core/packing.h"
 #include "core/solid.h"
-#include "core/void_plan.h"
 #include "pipeline/options.h"
 #include "printing/economics.h"
 
@@ -25,9 +25,6 @@ struct PrintPrediction {
   bool heavier() const { return filament_after_mm3 > filament_before_mm3; }
 };
 
-// Whether the filament of this job can be predicted: its process prints filament.
-bool prints_filament(const HollowOptions& options);
-
 // The request with voids left out that would take more filament than they save, each by itself: a larger
 // min_radius, with a notice. Nothing is changed if the print is not described, if it may become heavier, or
 // for given spheres. Throws NothingToRemoveError with the figures if even the largest void would not pay.
@@ -37,9 +34,10 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
 // "voids of 3.5 mm save above 62 % infill", and what else there is to do.
 std::string where_voids_pay(double radius, const PrintSettings& settings);
 
-// `outer`: the surface of `solid` without the voids. Throws NothingToRemoveError if the print is described
+// `outer`: the surface of `solid` without the voids. Nothing for modifiers, and where the process prints no
+// filament. Throws NothingToRemoveError if the print is described
 // and would become heavier, unless the options allow it; then it is a notice.
-PrintPrediction predict_print(const Mesh& outer, const Solid& solid, const VoidPlan& plan,
-                              const HollowOptions& options, Monitor& monitor);
+std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
+                                             const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "check/drainage_facts.h"
 #include "check/output_facts.h"
 #include "core/packing.h"
 #include "mesh/inspect.h"
+#include "pipeline/balance.h"
+#include "pipeline/drain.h"
+#include "pipeline/input_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
 
@@ -20,25 +22,6 @@ struct StageCost {
   std::string name;
   double seconds = 0;
   double peak_bytes = 0;
-};
-
-// A model as it came from its file.
-struct InputFacts {
-  std::filesystem::path path;
-  std::string format;
-  std::size_t part_count = 1;
-  Inspection inspection;
-};
-
-// How a model stands, and how stiff it is left.
-struct Balance {
-  // How far inside the footprint the centre of mass is, mm (footing_margin): absent for a model that stands
-  // on a tip or an edge, or where there is no centre of mass.
-  std::optional<double> margin_before;
-  std::optional<double> margin_after;
-  double stiffness = 1;  // upper bound of what is left of it, 0..1 (stiffness_upper_bound)
-
-  bool tips_over() const { return margin_before && margin_after && *margin_before >= 0 && *margin_after < 0; }
 };
 
 // Everything that `hollow` tells; rendered as text and as JSON by the command line.
@@ -68,7 +51,7 @@ struct HollowReport {
   std::size_t output_bytes = 0;
   OutputFacts output;
   // Of voids that drain; absent where each is sealed.
-  std::optional<DrainageFacts> drainage;
+  std::optional<DrainedVoids> drainage;
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;
 

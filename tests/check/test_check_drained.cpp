@@ -6,10 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "check/check_drained.h"
-#include "check/outward_shells.h"
+#include "check/check_written.h"
+#include "check/crossings.h"
 #include "core/error.h"
 #include "core/overhang.h"
+#include "mesh/outward_shells.h"
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
 #include "packing/tube_through.h"
@@ -34,14 +35,14 @@ class CheckDrained : public testing::Test {
  protected:
   struct Sound {
     Mesh model;
-    std::vector<Sphere> balls;
+    Packing packing;
     DrainagePlan plan;
-    DrainedSolid solid;
+    Solid solid;
   };
 
   CheckDrained() : CheckDrained(sound_block()) {}
   explicit CheckDrained(const Sound& sound)
-      : model_(sound.model), balls_(sound.balls), plan_(sound.plan), solid_(sound.solid) {}
+      : model_(sound.model), packing_(sound.packing), plan_(sound.plan), solid_(sound.solid) {}
 
   // Made once for all tests.
   static const Sound& sound_block() {
@@ -52,7 +53,7 @@ class CheckDrained : public testing::Test {
   static Sound drain(Mesh model) {
     Sound sound{std::move(model), {}, {}, {}};
     Monitor silent;
-    Packing packing = pack_adaptive(sound.model, kLimits, {}, silent);
+    const Packing packing = pack_adaptive(sound.model, kLimits, {}, silent);
     const SurfaceIndex surface(sound.model);
     const OutwardShells outward(sound.model, inspect(sound.model), surface);
     const PlannedDrainage planned = plan_drainage(
@@ -64,24 +65,31 @@ class CheckDrained : public testing::Test {
                  !is_crossed_near(sound.model, surface, hole.tube);
         },
         silent);
-    for (const std::uint32_t i : planned.kept) sound.balls.push_back(packing.spheres[i]);
+    sound.packing = packing;
+    sound.packing.spheres.clear();
+    for (const std::uint32_t i : planned.kept) sound.packing.spheres.push_back(packing.spheres[i]);
     sound.plan = planned.plan;
-    sound.solid = carve_drained(sound.model, sound.balls, sound.plan, {.tolerance = kTolerance}, silent);
+    sound.solid =
+        carve_drained(sound.model, surface, sound.packing, sound.plan, {.tolerance = kTolerance}, silent);
     return sound;
   }
 
-  OutputFacts check() {
+  OutputFacts check() { return check(as_read_back(solid_.mesh)); }
+  OutputFacts check(const Mesh& written) {
     Monitor silent;
-    return check_drained(as_read_back(solid_.mesh),
+    return check_written(written,
                          {.solid = solid_,
                           .model = model_,
-                          .surface = model_,
+                          .surface = SurfaceIndex(model_),
                           .inspection = inspect(model_),
-                          .balls = balls_,
-                          .plan = plan_,
-                          .limits = limits_,
+                          .packing = packing_,
+                          .drainage = &plan_,
                           .tolerance = tolerance_},
-                         drainage_, silent);
+                         silent);
+  }
+  void carve() {
+    Monitor silent;
+    solid_ = carve_drained(model_, SurfaceIndex(model_), packing_, plan_, {.tolerance = tolerance_}, silent);
   }
   void expect_found(const std::string& said) {
     EXPECT_TRUE(contains(message_of<FailureError>([&] { check(); }), said));
@@ -90,27 +98,25 @@ class CheckDrained : public testing::Test {
   static constexpr PackingLimits kLimits{.wall = 2, .gap = 1, .min_radius = 2.5, .max_radius = 6};
   static constexpr double kTolerance = 0.05;
 
-  PackingLimits limits_ = kLimits;
   double tolerance_ = kTolerance;
   Mesh model_;
-  std::vector<Sphere> balls_;
+  Packing packing_;
   DrainagePlan plan_;
-  DrainedSolid solid_;
-  DrainageFacts drainage_;
+  Solid solid_;
 };
 
 TEST_F(CheckDrained, MeasuresASoundResult) {
   const OutputFacts facts = check();
-  EXPECT_EQ(facts.void_count, balls_.size());
-  EXPECT_EQ(drainage_.sealed_cavities, 0U);
-  EXPECT_EQ(drainage_.cavities_of_model, 0U);
-  EXPECT_GE(drainage_.channel_wall, 2 - 0.025);
+  EXPECT_EQ(facts.void_count, packing_.spheres.size());
+  EXPECT_EQ(facts.drainage->sealed_cavities, 0U);
+  EXPECT_EQ(facts.drainage->cavities_of_model, 0U);
+  EXPECT_GE(facts.drainage->channel_wall, 2 - 0.025);
   EXPECT_GE(facts.clearances.wall, 2);
   EXPECT_GE(facts.clearances.gap.value(), 1 - 1e-6);
   EXPECT_NEAR(facts.volume_before, 36000, 1e-6);
   EXPECT_NEAR(facts.volume_after, signed_volume(solid_.mesh), 1e-3);
   EXPECT_LE(facts.void_deviation, tolerance_);
-  EXPECT_GT(drainage_.cut_triangles, 0U);
+  EXPECT_GT(facts.drainage->cut_triangles, 0U);
 }
 
 TEST_F(CheckDrained, AMovedTriangleOfTheOuterSurface) {
@@ -120,12 +126,12 @@ TEST_F(CheckDrained, AMovedTriangleOfTheOuterSurface) {
 
 TEST_F(CheckDrained, AnOpenEdge) {
   solid_.mesh.triangles.pop_back();
-  --solid_.hole_ends.back();
+  --solid_.parts.back().triangle_count;
   expect_found("open edges");
 }
 
 TEST_F(CheckDrained, AMovedVoid) {
-  balls_[0].centre.x += 0.5;
+  packing_.spheres[0].centre.x += 0.5;
   expect_found("void 0: it ");
 }
 
@@ -135,12 +141,12 @@ TEST_F(CheckDrained, ATubeThatIsTooWide) {
 }
 
 TEST_F(CheckDrained, AWallThatIsTooThin) {
-  limits_.wall = 2.2;
+  packing_.limits.wall = 2.2;
   expect_found("the limit 2.2 mm");
 }
 
 TEST_F(CheckDrained, AGapThatIsTooThin) {
-  limits_.gap = 1.2;
+  packing_.limits.gap = 1.2;
   expect_found("1.2 mm");
 }
 
@@ -155,33 +161,30 @@ TEST_F(CheckDrained, CutsAwayFromHoles) {
 
 // The same voids without their channels and holes: shells of their own.
 TEST_F(CheckDrained, SealedVoids) {
-  Monitor silent;
   plan_.channels.clear();
   plan_.holes.clear();
-  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
-  expect_found(std::to_string(balls_.size()) + " cavities are sealed");
+  carve();
+  expect_found(std::to_string(packing_.spheres.size()) + " cavities are sealed");
 }
 
 TEST_F(CheckDrained, AVoidThatNoChannelJoins) {
-  Monitor silent;
   const std::uint32_t last = plan_.channels.back().to;
   std::erase_if(plan_.channels, [&](const Channel& c) { return c.from == last || c.to == last; });
   std::erase_if(plan_.holes, [&](const EscapeHole& hole) { return hole.from == last; });
-  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  carve();
   expect_found("sealed");
 }
 
 TEST_F(CheckDrained, AChannelThatWasForgotten) {
   const DrainagePlan whole = plan_;
   plan_.channels.pop_back();
-  Monitor silent;
-  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  carve();
   plan_ = whole;
   expect_found("were planned");
 }
 
 TEST_F(CheckDrained, MoreIsRemovedThanPlanned) {
-  for (Sphere& ball : balls_) ball.radius += 0.02;
+  for (Sphere& ball : packing_.spheres) ball.radius += 0.02;
   tolerance_ = 0.2;
   EXPECT_NO_THROW(check());  // coarser by that, but within what is expected
   tolerance_ = 0.001;
@@ -192,21 +195,21 @@ TEST_F(CheckDrained, MoreIsRemovedThanPlanned) {
 class CheckDrainedRoofs : public CheckDrained {
  protected:
   void carve(double channel_radius) {
-    limits_.roof = make_roof({.degrees = 45, .bridge = 2, .up = {0, 0, 1}});
-    balls_ = {{{12, 15, 11}, 6, SphereKind::adaptive}, {{28, 15, 11}, 6, SphereKind::adaptive}};
+    packing_.limits.roof = make_roof({.degrees = 45, .bridge = 2, .up = {0, 0, 1}});
+    packing_.spheres = {{{12, 15, 11}, 6, SphereKind::adaptive}, {{28, 15, 11}, 6, SphereKind::adaptive}};
     plan_ = {};
-    plan_.roof = limits_.roof;
+    plan_.roof = packing_.limits.roof;
     plan_.network_count = 1;
-    const std::vector<VoidShape> voids = shapes_of(balls_, limits_.roof);
-    const Vec3d a = balls_[0].centre, b = balls_[1].centre;
-    plan_.channels.push_back({0, 1, tube_between(voids[0], voids[1], a, b, channel_radius).value()});
+    const std::vector<VoidShape> voids = shapes_of(packing_.spheres, packing_.limits.roof);
+    plan_.channels.push_back(
+        {0, 1,
+         tube_between(voids[0], voids[1], voids[0].centre(), voids[1].centre(), channel_radius).value()});
     for (std::uint32_t i = 0; i < 2; ++i) {
       Tube tube = tube_out_of(voids[i], voids[i].centre(), {0, 0, -1}, 1, 2.5).value();
       tube.end.z = 0;
       plan_.holes.push_back({i, tube, 0});
     }
-    Monitor silent;
-    solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+    CheckDrained::carve();
   }
 };
 
@@ -217,7 +220,7 @@ TEST_F(CheckDrainedRoofs, CeilingsAreMeasured) {
   ASSERT_TRUE(facts.ceilings.has_value());
   EXPECT_EQ(facts.ceilings->count, 3U);  // two flat tops and the channel's
   EXPECT_NEAR(facts.ceilings->widest, 2, tolerance_);
-  EXPECT_EQ(drainage_.sealed_cavities, 0U);
+  EXPECT_EQ(facts.drainage->sealed_cavities, 0U);
 }
 
 TEST_F(CheckDrainedRoofs, AChannelThatIsWiderThanTheBridge) {
@@ -231,19 +234,8 @@ TEST_F(CheckDrained, WhatFailsIsNeverWritten) {
   const auto write = [&](const std::string& name) {
     Monitor silent;
     AnnouncedFile pending(folder.path() / name, silent);
-    const auto check_read = [&](const Mesh& written) {
-      check_drained(written,
-                    {.solid = solid_,
-                     .model = model_,
-                     .surface = model_,
-                     .inspection = inspect(model_),
-                     .balls = balls_,
-                     .plan = plan_,
-                     .limits = limits_,
-                     .tolerance = tolerance_},
-                    drainage_, silent);
-    };
-    write_checked(as_solid(solid_), pending, {}, check_read, silent);
+    write_checked(
+        solid_, pending, {}, [&](const Mesh& written) { check(written); }, silent);
   };
   write("sound.stl");
   const auto sound = test::read_bytes(folder.path() / "sound.stl");
@@ -266,28 +258,25 @@ class CheckDrainedWithCavity : public CheckDrained {
 };
 
 TEST_F(CheckDrainedWithCavity, KeepsItAsItIsAndCountsIt) {
-  check();
-  EXPECT_EQ(drainage_.cavities_of_model, 1U);
-  EXPECT_EQ(drainage_.sealed_cavities, 0U);
+  const OutputFacts facts = check();
+  EXPECT_EQ(facts.drainage->cavities_of_model, 1U);
+  EXPECT_EQ(facts.drainage->sealed_cavities, 0U);
 }
 
 TEST_F(CheckDrainedWithCavity, AHoleIntoTheCavityIsSealed) {
   Monitor silent;
   // The network opened downwards into the cavity alone.
-  Packing packing;
-  packing.spheres = balls_;
-  packing.limits = limits_;
   const SurfaceIndex surface(model_);
   const kernels::HostWinding nothing(model_.positions, {});
   const PlannedDrainage planned = plan_drainage(
-      {surface, nothing.view()}, packing,
+      {surface, nothing.view()}, packing_,
       {.channel_radius = 1.75, .hole_radius = 1.75, .escape_holes = {{20, 15, 30}, {12, 15, 30}}},
       [](const EscapeHole&) { return true; }, silent);
   std::vector<Sphere> kept;
-  for (const std::uint32_t i : planned.kept) kept.push_back(balls_[i]);
-  balls_ = kept;
+  for (const std::uint32_t i : planned.kept) kept.push_back(packing_.spheres[i]);
+  packing_.spheres = kept;
   plan_ = planned.plan;
-  solid_ = carve_drained(model_, balls_, plan_, {.tolerance = tolerance_}, silent);
+  carve();
   expect_found("sealed");
 }
 

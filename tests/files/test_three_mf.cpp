@@ -42,10 +42,8 @@ Solid box_with_a_void() {
   const Mesh shell = turned_inside_out(make_box({8, 8, 8}, {12, 12, 12}));
   Solid solid;
   solid.mesh = join(outer, shell);
-  solid.outer_triangle_count = outer.triangles.size();
-  solid.outer_vertex_count = outer.positions.size();
-  solid.void_shells = {
-      {outer.triangles.size(), shell.triangles.size(), outer.positions.size(), shell.positions.size()}};
+  solid.parts = {{PartKind::outer, 0, outer.triangles.size()}};
+  solid.close_part(PartKind::void_surface);
   return solid;
 }
 

@@ -12,6 +12,7 @@
 #include "pipeline/thread_limit.h"
 #include "printing/carve.h"
 #include "tests/support/caught.h"
+#include "tests/support/packing_of.h"
 
 namespace aerate {
 namespace {
@@ -72,22 +73,25 @@ TEST(Material, FiguresCanBeOverridden) {
 }
 
 TEST(Budget, ToleranceIsLoosenedOnlyAsFarAsNeeded) {
-  const VoidPlan plan{{{{0, 0, 0}, 5, SphereKind::lattice}, {{20, 0, 0}, 2, SphereKind::lattice}}};
+  const Packing packing =
+      test::packing_of({{{0, 0, 0}, 5, SphereKind::lattice}, {{20, 0, 0}, 2, SphereKind::lattice}});
   const double fine = 0.02;
-  EXPECT_EQ(tolerance_for(plan, fine, 100, {}), fine);
-  const std::size_t at_fine = estimate_void_triangles(plan, {.tolerance = fine});
-  EXPECT_EQ(tolerance_for(plan, fine, 100, 100 + at_fine), fine);
+  EXPECT_EQ(tolerance_for(packing, fine, 100, {}), fine);
+  const std::size_t at_fine = estimate_void_triangles(packing, {.tolerance = fine});
+  EXPECT_EQ(tolerance_for(packing, fine, 100, 100 + at_fine), fine);
 
-  const double loosened = tolerance_for(plan, fine, 100, 100 + at_fine / 3);
+  const double loosened = tolerance_for(packing, fine, 100, 100 + at_fine / 3);
   EXPECT_GT(loosened, fine);
-  EXPECT_LE(estimate_void_triangles(plan, {.tolerance = loosened}), at_fine / 3);
-  EXPECT_TRUE(contains(message_of<UsageError>([&] { tolerance_for(plan, fine, 100, 99); }), "100 triangles"));
+  EXPECT_LE(estimate_void_triangles(packing, {.tolerance = loosened}), at_fine / 3);
+  EXPECT_TRUE(
+      contains(message_of<UsageError>([&] { tolerance_for(packing, fine, 100, 99); }), "100 triangles"));
 }
 
 TEST(Budget, VoidsBeyondMemoryAreRefusedWithAnEstimate) {
-  VoidPlan plan;
-  plan.spheres.assign(1'000'000, {{0, 0, 0}, 5, SphereKind::lattice});
-  const std::string said = message_of<UsageError>([&] { require_memory_for_voids(plan, 1e-3, 1'000'000); });
+  Packing packing;
+  packing.spheres.assign(1'000'000, {{0, 0, 0}, 5, SphereKind::lattice});
+  const std::string said =
+      message_of<UsageError>([&] { require_memory_for_voids(packing, 1e-3, 1'000'000); });
   EXPECT_TRUE(contains(said, "1000000 voids"));
   EXPECT_TRUE(contains(said, "are available"));
 }

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "printing/ball_template.h"
 #include "printing/carve.h"
+#include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shells.h"
 
@@ -24,14 +25,14 @@ double ball_volume(double radius) {
   return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
 }
 
-Solid carve(const VoidPlan& plan, double tolerance) {
+Solid carve(const Packing& packing, double tolerance) {
   Monitor monitor;
-  return carve_keeping_surface(test::make_box({-1, -1, -1}, {101, 101, 101}), plan, {tolerance}, monitor);
+  return carve_keeping_surface(test::make_box({-1, -1, -1}, {101, 101, 101}), packing, {tolerance}, monitor);
 }
 
 // A void surface as it is seen from outside the model: turned so that its volume is positive.
 Mesh void_surface(const Solid& solid, std::size_t i) {
-  return test::turned_inside_out(test::extract(solid.mesh, solid.void_shells[i]));
+  return test::turned_inside_out(test::extract(solid.mesh, solid.of(PartKind::void_surface)[i]));
 }
 
 void expect_good_void(const Mesh& surface, const Sphere& sphere, double tolerance) {
@@ -46,19 +47,19 @@ void expect_good_void(const Mesh& surface, const Sphere& sphere, double toleranc
 }
 
 TEST(Carve, VoidsLieInsideTheirSphereWithinTheTolerance) {
-  VoidPlan plan;
+  Packing packing;
   for (const double radius : {0.04, 0.3, 0.62, 1.0, 1.7, 3.0, 4.2, 9.5, 20.0}) {
-    plan.spheres.push_back(ball({17.3 + radius, 50.1 - radius, 33.7 * radius}, radius));
-    plan.spheres.push_back(ball({0, 0, 0}, radius));
-    plan.spheres.push_back(ball({-60.7, 70.3, 0.01}, radius));
-    if (radius > 0.1) plan.spheres.push_back(ball({-900.7, 1100.3, 0.01}, radius));
+    packing.spheres.push_back(ball({17.3 + radius, 50.1 - radius, 33.7 * radius}, radius));
+    packing.spheres.push_back(ball({0, 0, 0}, radius));
+    packing.spheres.push_back(ball({-60.7, 70.3, 0.01}, radius));
+    if (radius > 0.1) packing.spheres.push_back(ball({-900.7, 1100.3, 0.01}, radius));
   }
   for (const double tolerance : {0.5, 0.05, 0.01}) {
-    const Solid solid = carve(plan, tolerance);
-    ASSERT_EQ(solid.void_shells.size(), plan.spheres.size());
-    for (std::size_t i = 0; i < plan.spheres.size(); ++i) {
+    const Solid solid = carve(packing, tolerance);
+    ASSERT_EQ(solid.of(PartKind::void_surface).size(), packing.spheres.size());
+    for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
       SCOPED_TRACE("sphere " + std::to_string(i) + ", tolerance " + std::to_string(tolerance));
-      expect_good_void(void_surface(solid, i), plan.spheres[i], tolerance);
+      expect_good_void(void_surface(solid, i), packing.spheres[i], tolerance);
     }
   }
 }
@@ -67,57 +68,54 @@ TEST(Carve, TakesAtMostTwiceTheTrianglesOfEquilateralOnes) {
   constexpr double kTolerance = 0.05;
   for (const double radius : {1.0, 3.0, 9.5}) {
     const Solid solid = carve({{ball({40, 50, 60}, radius)}}, kTolerance);
-    EXPECT_LE(static_cast<double>(solid.void_shells[0].triangle_count),
+    EXPECT_LE(static_cast<double>(solid.of(PartKind::void_surface)[0].triangle_count),
               2 * kIdealTriangles * radius / kTolerance)
         << "radius " << radius;
   }
 }
 
 TEST(Carve, KeepsTheOuterSurfaceAndListsShellsInOrder) {
-  const VoidPlan plan{{ball({20, 20, 20}, 5), ball({70, 70, 70}, 1), ball({20, 70, 70}, 2)}};
+  const Packing packing =
+      test::packing_of({ball({20, 20, 20}, 5), ball({70, 70, 70}, 1), ball({20, 70, 70}, 2)});
   const Mesh outer = test::make_box({-1, -1, -1}, {101, 101, 101});
-  const Solid solid = carve(plan, 0.05);
-  EXPECT_EQ(solid.outer_triangle_count, 12);
-  EXPECT_EQ(solid.outer_vertex_count, 8);
+  const Solid solid = carve(packing, 0.05);
+  EXPECT_EQ(solid.outer_triangle_count(), 12);
   EXPECT_TRUE(std::equal(outer.triangles.begin(), outer.triangles.end(), solid.mesh.triangles.begin()));
   EXPECT_TRUE(std::equal(outer.positions.begin(), outer.positions.end(), solid.mesh.positions.begin()));
   EXPECT_TRUE(test::is_closed_manifold(solid.mesh));
 
-  std::size_t next_triangle = 12, next_vertex = 8;
-  for (const ShellRange& range : solid.void_shells) {
+  std::size_t next_triangle = 12;
+  for (const SolidPart& range : solid.of(PartKind::void_surface)) {
     EXPECT_EQ(range.first_triangle, next_triangle);
-    EXPECT_EQ(range.first_vertex, next_vertex);
     next_triangle += range.triangle_count;
-    next_vertex += range.vertex_count;
   }
   EXPECT_EQ(next_triangle, solid.mesh.triangles.size());
-  EXPECT_EQ(next_vertex, solid.mesh.positions.size());
   EXPECT_LT(signed_volume(solid.mesh), signed_volume(outer));
 }
 
 TEST(Carve, VoidsThatTouchStayApart) {
   // Touching along the x axis, at coordinates that fp32 rounds.
-  VoidPlan plan;
+  Packing packing;
   double x = 1.0 / 3;
   for (const double radius : {1.1, 0.7, 2.3, 0.9}) {
-    plan.spheres.push_back(ball({x + radius, 50.0 / 7, 1000.0 / 7}, radius));
+    packing.spheres.push_back(ball({x + radius, 50.0 / 7, 1000.0 / 7}, radius));
     x += 2 * radius;
   }
-  const Solid solid = carve(plan, 0.01);
-  for (std::size_t i = 1; i < plan.spheres.size(); ++i) {
+  const Solid solid = carve(packing, 0.01);
+  for (std::size_t i = 1; i < packing.spheres.size(); ++i) {
     EXPECT_LT(bounding_box(void_surface(solid, i - 1)).upper.x, bounding_box(void_surface(solid, i)).lower.x);
   }
 }
 
 TEST(Carve, SameBytesForAnyThreadCount) {
-  VoidPlan plan;
+  Packing packing;
   for (int i = 0; i < 300; ++i) {
-    plan.spheres.push_back(ball({3.0 * (i % 10), 3.0 * (i / 10 % 10), 3.0 * (i / 100)}, 0.62 + 0.003 * i));
+    packing.spheres.push_back(ball({3.0 * (i % 10), 3.0 * (i / 10 % 10), 3.0 * (i / 100)}, 0.62 + 0.003 * i));
   }
   Solid first;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    Solid solid = carve(plan, 0.02);
+    Solid solid = carve(packing, 0.02);
     if (threads == 1) first = solid;
     EXPECT_EQ(solid.mesh.triangles, first.mesh.triangles) << threads << " threads";
     EXPECT_EQ(solid.mesh.positions, first.mesh.positions) << threads << " threads";
@@ -144,27 +142,30 @@ TEST(Carve, StopsWhenInterrupted) {
 }
 
 TEST(Carve, EstimateIsExact) {
-  const VoidPlan plan{{ball({20, 20, 20}, 5), ball({70, 70, 70}, 1), ball({20, 70, 70}, 2)}};
+  const Packing packing =
+      test::packing_of({ball({20, 20, 20}, 5), ball({70, 70, 70}, 1), ball({20, 70, 70}, 2)});
   for (const double tolerance : {0.3, 0.05, 0.01}) {
-    EXPECT_EQ(estimate_void_triangles(plan, {tolerance}), carve(plan, tolerance).mesh.triangles.size() - 12);
-    EXPECT_GE(most_void_triangles(plan, {tolerance}), estimate_void_triangles(plan, {tolerance}));
+    EXPECT_EQ(estimate_void_triangles(packing, {tolerance}),
+              carve(packing, tolerance).mesh.triangles.size() - 12);
+    EXPECT_GE(most_void_triangles(packing, {tolerance}), estimate_void_triangles(packing, {tolerance}));
   }
   EXPECT_EQ(estimate_void_triangles({}, {}), 0);
 }
 
 TEST(Carve, FindsTheToleranceForATriangleBudget) {
-  const VoidPlan plan{{ball({20, 20, 20}, 5), ball({70, 70, 70}, 1), ball({20, 70, 70}, 2)}};
+  const Packing packing =
+      test::packing_of({ball({20, 20, 20}, 5), ball({70, 70, 70}, 1), ball({20, 70, 70}, 2)});
   const CarveOptions options{0.03};
-  const std::size_t finest = estimate_void_triangles(plan, options);
-  const std::size_t coarsest = estimate_void_triangles(plan, {100});
-  EXPECT_EQ(loosen_tolerance(plan, options, finest), options.tolerance);
-  EXPECT_EQ(loosen_tolerance(plan, options, coarsest - 1), std::nullopt);
+  const std::size_t finest = estimate_void_triangles(packing, options);
+  const std::size_t coarsest = estimate_void_triangles(packing, {100});
+  EXPECT_EQ(loosen_tolerance(packing, options, finest), options.tolerance);
+  EXPECT_EQ(loosen_tolerance(packing, options, coarsest - 1), std::nullopt);
   for (const std::size_t budget : {coarsest, finest / 4, finest / 2, finest - 1}) {
-    const std::optional<double> tolerance = loosen_tolerance(plan, options, budget);
+    const std::optional<double> tolerance = loosen_tolerance(packing, options, budget);
     ASSERT_TRUE(tolerance) << budget;
     EXPECT_GT(*tolerance, options.tolerance);
-    EXPECT_LE(estimate_void_triangles(plan, {*tolerance}), budget);
-    EXPECT_GT(estimate_void_triangles(plan, {*tolerance / 1.02}), budget);
+    EXPECT_LE(estimate_void_triangles(packing, {*tolerance}), budget);
+    EXPECT_GT(estimate_void_triangles(packing, {*tolerance / 1.02}), budget);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "printing/remesh.h"
 #include "printing/shells.h"
 #include "tests/support/caught.h"
+#include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shells.h"
 
@@ -203,27 +204,28 @@ TEST(Remesh, StopsWhenInterrupted) {
 class Subtract : public testing::Test {
  protected:
   Mesh block_ = test::make_box({0, 0, 0}, {30, 20, 20});
-  VoidPlan plan_{{ball({22.3, 10, 10}, 5), ball({9.1, 9.7, 10.2}, 7), ball({16.8, 3.2, 3.1}, 1.7),
-                  ball({16.8, 16.2, 16.1}, 2.3)}};
+  Packing packing_ = test::packing_of({ball({22.3, 10, 10}, 5), ball({9.1, 9.7, 10.2}, 7),
+                                       ball({16.8, 3.2, 3.1}, 1.7), ball({16.8, 16.2, 16.1}, 2.3)});
 };
 
 TEST_F(Subtract, GivesTheSurfaceAndEachVoidInOrder) {
   constexpr double kTolerance = 0.05;
   const ModelLevelSet model = level_set_of(block_, 0.4);
   Monitor monitor;
-  const Solid solid = model.subtract(plan_, {kTolerance}, monitor);
+  const Solid solid = model.subtract(packing_, {kTolerance}, monitor);
   EXPECT_TRUE(is_sound(solid.mesh));
 
   const Mesh surface = model.surface();
-  const Mesh outer = test::extract(solid.mesh, {0, solid.outer_triangle_count, 0, solid.outer_vertex_count});
+  const Mesh outer = test::extract(solid.mesh, solid.parts.front());
   EXPECT_EQ(outer.triangles, surface.triangles);
   EXPECT_EQ(outer.positions, surface.positions);
 
-  ASSERT_EQ(solid.void_shells.size(), plan_.spheres.size());
-  for (std::size_t i = 0; i < plan_.spheres.size(); ++i) {
+  ASSERT_EQ(solid.of(PartKind::void_surface).size(), packing_.spheres.size());
+  for (std::size_t i = 0; i < packing_.spheres.size(); ++i) {
     SCOPED_TRACE("void " + std::to_string(i));
-    const Sphere& sphere = plan_.spheres[i];
-    const Mesh shell = test::turned_inside_out(test::extract(solid.mesh, solid.void_shells[i]));
+    const Sphere& sphere = packing_.spheres[i];
+    const Mesh shell =
+        test::turned_inside_out(test::extract(solid.mesh, solid.of(PartKind::void_surface)[i]));
     EXPECT_EQ(test::euler_characteristic(shell), 2);
     EXPECT_TRUE(test::is_star_shaped(shell, sphere.centre));
     const test::Deviation deviation = test::deviation_from(shell, sphere);
@@ -237,10 +239,10 @@ TEST_F(Subtract, TheDifferenceLeavesTheOuterSurfaceAsItIs) {
   Monitor monitor;
   const LevelSet model = LevelSet::of_solid(block_, 0.4, LevelSet::Interior::enclosed, monitor);
   const Mesh whole = model.surface();
-  const Mesh cut = model.minus(LevelSet::of_balls(plan_.spheres, 0.4)).surface();
+  const Mesh cut = model.minus(LevelSet::of_balls(packing_.spheres, 0.4)).surface();
   EXPECT_TRUE(is_sound(cut));
   const std::vector<Mesh> shells = split_into_shells(cut);
-  EXPECT_EQ(shells.size(), 1 + plan_.spheres.size());
+  EXPECT_EQ(shells.size(), 1 + packing_.spheres.size());
   for (const Mesh& shell : shells) {
     if (signed_volume(shell) < 0) continue;
     EXPECT_EQ(shell.positions, whole.positions);
@@ -251,71 +253,73 @@ TEST_F(Subtract, TheDifferenceLeavesTheOuterSurfaceAsItIs) {
 TEST_F(Subtract, KeepsAToleranceThatIsMuchFinerThanTheVoxels) {
   constexpr double kTolerance = 0.002;
   Monitor monitor;
-  const Solid solid = level_set_of(block_, 0.4).subtract(plan_, {kTolerance}, monitor);
+  const Solid solid = level_set_of(block_, 0.4).subtract(packing_, {kTolerance}, monitor);
   EXPECT_TRUE(is_sound(solid.mesh));
-  for (std::size_t i = 0; i < plan_.spheres.size(); ++i) {
+  for (std::size_t i = 0; i < packing_.spheres.size(); ++i) {
     const test::Deviation deviation = test::deviation_from(
-        test::turned_inside_out(test::extract(solid.mesh, solid.void_shells[i])), plan_.spheres[i]);
+        test::turned_inside_out(test::extract(solid.mesh, solid.of(PartKind::void_surface)[i])),
+        packing_.spheres[i]);
     EXPECT_LE(deviation.highest, 0);
     EXPECT_GE(deviation.lowest, -kTolerance);
   }
 }
 
 TEST_F(Subtract, RefusesVoidsThatVoxelsCannotHold) {
-  plan_.spheres.push_back(ball({2, 2, 2}, 0.7));
+  packing_.spheres.push_back(ball({2, 2, 2}, 0.7));
   Monitor monitor;
   const ModelLevelSet model = level_set_of(block_, 0.4);
-  const std::string message = test::message_of<FailureError>([&] { model.subtract(plan_, {}, monitor); });
+  const std::string message = test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); });
   EXPECT_TRUE(test::contains(message, "1 of 5 voids are too small for a voxel size of 0.4 mm"));
   EXPECT_TRUE(test::contains(message, "use --voxel 0.35 or less"));
-  EXPECT_NO_THROW(level_set_of(block_, 0.35).subtract(plan_, {}, monitor));
+  EXPECT_NO_THROW(level_set_of(block_, 0.35).subtract(packing_, {}, monitor));
 }
 
 TEST_F(Subtract, RefusesVoidsThatRunTogether) {
-  plan_.spheres = {ball({9.6, 10, 10}, 5), ball({19.85, 10, 10}, 5), ball({15, 16, 16}, 2.2)};
+  packing_.spheres = {ball({9.6, 10, 10}, 5), ball({19.85, 10, 10}, 5), ball({15, 16, 16}, 2.2)};
   Monitor monitor;
   const ModelLevelSet model = level_set_of(block_, 1);
-  const std::string message = test::message_of<FailureError>([&] { model.subtract(plan_, {}, monitor); });
+  const std::string message = test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); });
   EXPECT_TRUE(test::contains(message, "the void at (9.6, 10, 10) mm runs together with its neighbour"));
   EXPECT_TRUE(test::contains(message, "use --voxel 0.12 or less"));
-  EXPECT_NO_THROW(level_set_of(block_, 0.12).subtract(plan_, {}, monitor));
+  EXPECT_NO_THROW(level_set_of(block_, 0.12).subtract(packing_, {}, monitor));
 }
 
 TEST_F(Subtract, FindsVoidsWithRoofsAgain) {
   for (const Vec3d up : {Vec3d{0, 0, 1}, {-1, 0, 0}, {0.6, 0, 0.8}}) {
-    plan_ = {{ball({8, 10, 9}, 6), ball({22, 10, 9}, 5), ball({15, 3, 4}, 1.5)},
-             make_roof({.bridge = 3, .up = up})};
+    packing_ = test::packing_of({ball({8, 10, 9}, 6), ball({22, 10, 9}, 5), ball({15, 3, 4}, 1.5)},
+                                make_roof({.bridge = 3, .up = up}));
     Monitor monitor;
-    const Solid solid = level_set_of(block_, 0.3).subtract(plan_, {0.05}, monitor);
-    ASSERT_EQ(solid.void_shells.size(), 3U);
+    const Solid solid = level_set_of(block_, 0.3).subtract(packing_, {0.05}, monitor);
+    ASSERT_EQ(solid.of(PartKind::void_surface).size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {
-      const Mesh shell = test::turned_inside_out(test::extract(solid.mesh, solid.void_shells[i]));
-      const double planned = void_volume(plan_.roof, plan_.spheres[i].radius);
+      const Mesh shell =
+          test::turned_inside_out(test::extract(solid.mesh, solid.of(PartKind::void_surface)[i]));
+      const double planned = void_volume(packing_.limits.roof, packing_.spheres[i].radius);
       EXPECT_LT(signed_volume(shell), planned);
       EXPECT_GT(signed_volume(shell), 0.93 * planned);
     }
   }
   // Far enough apart as spheres; the roof of one reaches into the other.
-  plan_ = {{ball({15, 10, 6}, 5), ball({15, 10, 14}, 2)}, {}};
+  packing_ = test::packing_of({ball({15, 10, 6}, 5), ball({15, 10, 14}, 2)}, {});
   Monitor monitor;
   const ModelLevelSet model = level_set_of(block_, 0.3);
-  EXPECT_NO_THROW(model.subtract(plan_, {}, monitor));
-  plan_.roof = make_roof({.bridge = 1});
-  EXPECT_TRUE(test::contains(test::message_of<FailureError>([&] { model.subtract(plan_, {}, monitor); }),
+  EXPECT_NO_THROW(model.subtract(packing_, {}, monitor));
+  packing_.limits.roof = make_roof({.bridge = 1});
+  EXPECT_TRUE(test::contains(test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); }),
                              "runs together with its neighbour"));
 }
 
 TEST_F(Subtract, RefusesVoidsThatOpenTheSurface) {
-  plan_.spheres.push_back(ball({27, 2.7, 17.3}, 2.71));
+  packing_.spheres.push_back(ball({27, 2.7, 17.3}, 2.71));
   Monitor monitor;
   const ModelLevelSet model = level_set_of(block_, 0.4);
-  EXPECT_TRUE(test::contains(test::message_of<FailureError>([&] { model.subtract(plan_, {}, monitor); }),
+  EXPECT_TRUE(test::contains(test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); }),
                              "runs into the surface"));
 }
 
 TEST_F(Subtract, SameBytesForAnyThreadCount) {
   for (int i = 0; i < 27; ++i) {
-    plan_.spheres.push_back(
+    packing_.spheres.push_back(
         ball({35.0 + 4 * (i % 3), 4.0 + 4 * (i / 3 % 3), 4.0 + 4 * (i / 9)}, 1.0 + 0.02 * i));
   }
   block_ = test::join(block_, test::make_box({29, 0, 0}, {50, 20, 20}));
@@ -323,7 +327,7 @@ TEST_F(Subtract, SameBytesForAnyThreadCount) {
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     Monitor monitor;
-    Solid solid = level_set_of(block_, 0.4).subtract(plan_, {0.02}, monitor);
+    Solid solid = level_set_of(block_, 0.4).subtract(packing_, {0.02}, monitor);
     if (threads == 1) first = solid;
     EXPECT_EQ(solid.mesh.triangles, first.mesh.triangles) << threads << " threads";
     EXPECT_EQ(solid.mesh.positions, first.mesh.positions) << threads << " threads";

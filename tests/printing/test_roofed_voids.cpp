@@ -9,6 +9,7 @@
 #include "printing/carve.h"
 #include "printing/cut_ball.h"
 #include "tests/support/clearance.h"
+#include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
 #include "tests/support/shells.h"
 
@@ -20,14 +21,14 @@ Sphere ball(Vec3d centre, double radius) {
   return {centre, radius, SphereKind::adaptive};
 }
 
-Solid carve(const VoidPlan& plan, double tolerance) {
+Solid carve(const Packing& packing, double tolerance) {
   Monitor monitor;
-  return carve_keeping_surface(test::make_box({-100, -100, -100}, {101, 101, 101}), plan, {tolerance},
+  return carve_keeping_surface(test::make_box({-100, -100, -100}, {101, 101, 101}), packing, {tolerance},
                                monitor);
 }
 
 Mesh void_surface(const Solid& solid, std::size_t i) {
-  return test::turned_inside_out(test::extract(solid.mesh, solid.void_shells[i]));
+  return test::turned_inside_out(test::extract(solid.mesh, solid.of(PartKind::void_surface)[i]));
 }
 
 double height_of(const Roof& roof, const Sphere& sphere, Vec3f p) {
@@ -93,32 +94,33 @@ std::vector<Roof> roofs() {
 TEST(RoofedVoids, LieInsideTheirShapeWithinTheTolerance) {
   std::size_t roof_count = 0;
   for (const Roof& roof : roofs()) {
-    VoidPlan plan{{}, roof};
+    Packing packing = test::packing_of({}, roof);
     for (const double radius : {0.7, 3.0, 3.54, 4.2, 9.5}) {
-      plan.spheres.push_back(ball({17.3 + radius, 50.1 - radius, 3.7 * radius}, radius));
-      plan.spheres.push_back(ball({-60.7, 70.3, 0.01}, radius));
+      packing.spheres.push_back(ball({17.3 + radius, 50.1 - radius, 3.7 * radius}, radius));
+      packing.spheres.push_back(ball({-60.7, 70.3, 0.01}, radius));
     }
     // Fine surfaces take long: of two roofs only.
     for (const double tolerance : {0.3, roof_count++ < 2 ? 0.05 : 0.15}) {
-      const Solid solid = carve(plan, tolerance);
-      ASSERT_EQ(solid.void_shells.size(), plan.spheres.size());
-      for (std::size_t i = 0; i < plan.spheres.size(); ++i) {
+      const Solid solid = carve(packing, tolerance);
+      ASSERT_EQ(solid.of(PartKind::void_surface).size(), packing.spheres.size());
+      for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
         SCOPED_TRACE("overhang " + std::to_string(overhang_degrees(roof)) + ", radius " +
-                     std::to_string(plan.spheres[i].radius) + ", tolerance " + std::to_string(tolerance));
-        expect_good_void(void_surface(solid, i), roof, plan.spheres[i], tolerance);
+                     std::to_string(packing.spheres[i].radius) + ", tolerance " + std::to_string(tolerance));
+        expect_good_void(void_surface(solid, i), roof, packing.spheres[i], tolerance);
       }
-      EXPECT_EQ(estimate_void_triangles(plan, {tolerance}), solid.mesh.triangles.size() - 12);
-      EXPECT_GE(most_void_triangles(plan, {tolerance}), estimate_void_triangles(plan, {tolerance}));
+      EXPECT_EQ(estimate_void_triangles(packing, {tolerance}), solid.mesh.triangles.size() - 12);
+      EXPECT_GE(most_void_triangles(packing, {tolerance}), estimate_void_triangles(packing, {tolerance}));
     }
   }
 }
 
 TEST(RoofedVoids, AreFlatOnTopAndAsWideAsTheBridge) {
-  const VoidPlan plan{{ball({11.3, 20.7, 31.9}, 9.5), ball({60, 60, 60}, 4)}, make_roof({})};
-  const Solid solid = carve(plan, 0.05);
+  const Packing packing =
+      test::packing_of({ball({11.3, 20.7, 31.9}, 9.5), ball({60, 60, 60}, 4)}, make_roof({}));
+  const Solid solid = carve(packing, 0.05);
   for (std::size_t i = 0; i < 2; ++i) {
     const Mesh surface = void_surface(solid, i);
-    const Top top = top_of(surface, plan.roof, plan.spheres[i]);
+    const Top top = top_of(surface, packing.limits.roof, packing.spheres[i]);
     EXPECT_GE(top.vertices, 12);
     EXPECT_LE(top.radius, 2.5);
     EXPECT_GT(top.radius, 2.499);
@@ -132,23 +134,23 @@ TEST(RoofedVoids, AreFlatOnTopAndAsWideAsTheBridge) {
 
 TEST(RoofedVoids, TopsThatAreAlmostBallsOrPointsAreSound) {
   const Roof roof = make_roof({});
-  VoidPlan plan{{}, roof};
+  Packing packing = test::packing_of({}, roof);
   for (const double more : {1e-12, 1e-7, 1e-5, 1e-4, 1e-3, 0.01, 0.1}) {
-    plan.spheres.push_back(ball({11.3, 20.7, 31.9}, roof.widest_ball + more));
+    packing.spheres.push_back(ball({11.3, 20.7, 31.9}, roof.widest_ball + more));
   }
-  const Solid solid = carve(plan, 0.02);
-  for (std::size_t i = 0; i < plan.spheres.size(); ++i) {
+  const Solid solid = carve(packing, 0.02);
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
     SCOPED_TRACE(i);
-    expect_good_void(void_surface(solid, i), roof, plan.spheres[i], 0.02);
-    EXPECT_GE(top_of(void_surface(solid, i), roof, plan.spheres[i]).vertices, 12);
+    expect_good_void(void_surface(solid, i), roof, packing.spheres[i], 0.02);
+    EXPECT_GE(top_of(void_surface(solid, i), roof, packing.spheres[i]).vertices, 12);
   }
 }
 
 TEST(RoofedVoids, TakeFewTriangles) {
   constexpr double kTolerance = 0.05;
   for (const double radius : {4.0, 6.0, 9.5}) {
-    const VoidPlan roofed{{ball({40, 50, 60}, radius)}, make_roof({})};
-    const VoidPlan free{{ball({40, 50, 60}, radius)}};
+    const Packing roofed = test::packing_of({ball({40, 50, 60}, radius)}, make_roof({}));
+    const Packing free = test::packing_of({ball({40, 50, 60}, radius)});
     const auto with = static_cast<double>(estimate_void_triangles(roofed, {kTolerance}));
     const auto without = static_cast<double>(estimate_void_triangles(free, {kTolerance}));
     RecordProperty("radius_" + std::to_string(radius), std::to_string(with / without));
@@ -157,24 +159,25 @@ TEST(RoofedVoids, TakeFewTriangles) {
 }
 
 TEST(RoofedVoids, FindTheToleranceForATriangleBudget) {
-  const VoidPlan plan{{ball({20, 20, 20}, 9), ball({70, 70, 70}, 5), ball({20, 70, 70}, 2)}, make_roof({})};
+  const Packing packing =
+      test::packing_of({ball({20, 20, 20}, 9), ball({70, 70, 70}, 5), ball({20, 70, 70}, 2)}, make_roof({}));
   const CarveOptions options{0.03};
-  const std::size_t finest = estimate_void_triangles(plan, options);
-  const std::optional<double> tolerance = loosen_tolerance(plan, options, finest / 3);
+  const std::size_t finest = estimate_void_triangles(packing, options);
+  const std::optional<double> tolerance = loosen_tolerance(packing, options, finest / 3);
   ASSERT_TRUE(tolerance);
   EXPECT_GT(*tolerance, options.tolerance);
-  EXPECT_LE(estimate_void_triangles(plan, {*tolerance}), finest / 3);
-  EXPECT_EQ(loosen_tolerance(plan, options, 10), std::nullopt);
+  EXPECT_LE(estimate_void_triangles(packing, {*tolerance}), finest / 3);
+  EXPECT_EQ(loosen_tolerance(packing, options, 10), std::nullopt);
 }
 
 TEST(RoofedVoids, SameBytesForAnyThreadCount) {
-  VoidPlan plan{{}, make_roof({})};
+  Packing packing = test::packing_of({}, make_roof({}));
   for (int i = 0; i < 60; ++i)
-    plan.spheres.push_back(ball({3.0 * (i % 10), 3.0 * (i / 10), 0}, 1 + 0.06 * i));
+    packing.spheres.push_back(ball({3.0 * (i % 10), 3.0 * (i / 10), 0}, 1 + 0.06 * i));
   Solid first;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    Solid solid = carve(plan, 0.05);
+    Solid solid = carve(packing, 0.05);
     if (threads == 1) first = solid;
     EXPECT_EQ(solid.mesh.triangles, first.mesh.triangles) << threads << " threads";
     EXPECT_EQ(solid.mesh.positions, first.mesh.positions) << threads << " threads";

@@ -15,16 +15,18 @@
 // Brute-force checks of closed shells, as oracles for what makes them.
 namespace aerate::test {
 
-// The triangles of `range` alone, with their own vertices renumbered from 0.
-inline Mesh extract(const Mesh& mesh, const ShellRange& range) {
+// The triangles of a part alone, with their own vertices renumbered from 0, in their order.
+inline Mesh extract(const Mesh& mesh, const SolidPart& part) {
   Mesh shell;
-  const auto vertex = mesh.positions.begin() + static_cast<std::ptrdiff_t>(range.first_vertex);
-  shell.positions.assign(vertex, vertex + static_cast<std::ptrdiff_t>(range.vertex_count));
-  const auto first = static_cast<std::uint32_t>(range.first_vertex);
-  for (std::size_t i = 0; i < range.triangle_count; ++i) {
-    const Triangle& t = mesh.triangles[range.first_triangle + i];
-    shell.triangles.push_back({t[0] - first, t[1] - first, t[2] - first});
+  std::set<std::uint32_t> used;
+  for (const Triangle& t : triangles_of(mesh, part)) used.insert(t.begin(), t.end());
+  std::map<std::uint32_t, std::uint32_t> renumbered;
+  for (const std::uint32_t v : used) {
+    renumbered.emplace(v, static_cast<std::uint32_t>(shell.positions.size()));
+    shell.positions.push_back(mesh.positions[v]);
   }
+  for (const auto& [a, b, c] : triangles_of(mesh, part))
+    shell.triangles.push_back({renumbered.at(a), renumbered.at(b), renumbered.at(c)});
   return shell;
 }
 

@@ -87,6 +87,22 @@ TEST(SegmentDistance, ToVoidsWithRoofs) {
   }
 }
 
+TEST(VoidShape, HoldsWhatItsRadiusDoes) {
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = {0, 0, 1}});
+  const Sphere planned{{1, 2, 3}, 5, SphereKind::adaptive};
+  const VoidShape with_roof(planned, roof), round(planned, {});
+  EXPECT_DOUBLE_EQ(round.least_radius_holding({1, 2, 7}), 4);
+  EXPECT_DOUBLE_EQ(with_roof.least_radius_holding({1, 2, -1}), 4);
+  EXPECT_NEAR(with_roof.least_radius_holding({1, 2, 3 + roof.top(5)}), 5, 1e-12);  // its flat top's middle
+  EXPECT_DOUBLE_EQ(with_roof.least_radius_holding({1, 2, 4}), 1);  // so small a void has no roof
+  const kernels::Facet below{{0, 2, 0}, {2, 2, 0}, {1, 3, 0}};
+  EXPECT_DOUBLE_EQ(round.depth(below), 2);
+  EXPECT_DOUBLE_EQ(with_roof.depth(below), 2);
+  const auto top = static_cast<float>(3 + roof.top(5) - 0.25);
+  EXPECT_NEAR(with_roof.depth({{0, 2, top}, {2, 2, top}, {1, 3, top}}), 0.25, 1e-6);
+  EXPECT_DOUBLE_EQ(round.volume_within(0.5), round.volume() * 0.9 * 0.9 * 0.9);
+}
+
 TEST(SurfaceIndex, TrianglesNearAreTheSameByHierarchyAndByLookingAtAll) {
   const Mesh sphere = test::make_uv_sphere(10, 40, 60);
   const SurfaceIndex index(sphere);

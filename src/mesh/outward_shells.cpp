@@ -1,4 +1,4 @@
-#include "check/outward_shells.h"
+#include "mesh/outward_shells.h"
 
 #include <algorithm>
 #include <cstddef>
