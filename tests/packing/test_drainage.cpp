@@ -288,7 +288,7 @@ class PlanDrainage : public testing::Test {
       EXPECT_TRUE(is_bridged(c.tube, packing_.limits.roof));
       const Segment axis{c.tube.start, c.tube.end};
       for (const Triangle& t : mesh_.triangles)
-        EXPECT_GE(distance_to_facet(axis, test::facet_of(mesh_, t)), c.tube.radius + 2 - 1e-9);
+        EXPECT_GE(distance_to_facet(axis, facet_of(mesh_, t)), c.tube.radius + 2 - 1e-9);
       for (std::uint32_t i = 0; i < voids.size(); ++i) {
         if (i != c.from && i != c.to) {
           EXPECT_GE(voids[i].distance_to(axis), c.tube.radius + 1 - 1e-7);
