@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "core/error.h"
-#include "core/top_opening.h"
+#include "core/void_shape.h"
 #include "printing/ball_template.h"
 #include "printing/open_ball.h"
 #include "printing/roof_top.h"
@@ -47,7 +47,7 @@ std::size_t shoulder_sides(const Sphere& ball, const Roof& roof, double thinnest
 Opening shoulder_of(const Sphere& ball, const Roof& roof, std::size_t sides) {
   const Sphere smaller = shrunk(roof, ball);
   const Tube tube{smaller.centre, smaller.centre + roof.up, smaller.radius * roof.cosine};
-  return {tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, smaller, roof.up, sides)};
+  return {tube, TubeEnd::start, VoidShape(smaller, roof).rim(tube, TubeEnd::start, sides)};
 }
 
 // A ball with its openings, that of its roof last, and where its vertices begin in the result.
@@ -76,8 +76,8 @@ void close_above(Part& part, const Sphere& ball, const Roof& roof, double tolera
   const RoofTop top = part.out_of_top ? RoofTop::flat : roof_top_of(roof, ball, tolerance);
   const double scale = smaller.radius / ball.radius;
   const double width = part.out_of_top ? tube_radius : roof.flat_radius() * scale;
-  const double height =
-      part.out_of_top ? top_opening_height(tube_radius, smaller.radius, roof) : roof.top(ball.radius) * scale;
+  const double height = part.out_of_top ? VoidShape(smaller, roof).top_opening_height(tube_radius)
+                                        : roof.top(ball.radius) * scale;
   const Vec3d middle = ball.centre + roof.up * height;
   if (top == RoofTop::apex) opened.positions.push_back(middle);
   for (std::size_t i = 0; i < count && top == RoofTop::flat; ++i) {
@@ -160,7 +160,7 @@ class DrainedCarver {
     const Tube& tube = channel.tube;
     std::size_t sides = sides_of(tube, tolerance_);
     RingPlace start{channel.from, kOnTop};
-    if (comes_out_of_top(tube, balls_[channel.from], roof_)) {
+    if (VoidShape(balls_[channel.from], roof_).comes_out_of_top(tube)) {
       parts_[channel.from].out_of_top = tube;
       sides = sides_above(channel.from);
     } else {

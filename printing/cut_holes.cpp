@@ -14,9 +14,8 @@
 namespace aerate {
 namespace {
 
-// A prism begins this much inside its ball's surface, and ends beyond the model's by this many radii, mm.
+// A prism begins this much inside its ball's surface, mm.
 constexpr double kPrismMargin = 0.02;
-constexpr double kPrismBeyond = 1.8;
 
 CuttingPrism prism_of(const WayOut& way, const Roof& roof, double tolerance) {
   const Tube& tube = way.tube;
@@ -25,7 +24,7 @@ CuttingPrism prism_of(const WayOut& way, const Roof& roof, double tolerance) {
   CuttingPrism prism;
   prism.axis = along * (1 / length(along));
   prism.start = tube.start - prism.axis * kPrismMargin;
-  prism.length = length(along) + kPrismMargin + kPrismBeyond * tube.radius;
+  prism.length = length(along) + kPrismMargin + kCutBeyond * tube.radius;
   prism.radius = tube.radius;
   for (const Vec3d p : opening.ring) prism.ring.push_back(to_float(p));
   return prism;

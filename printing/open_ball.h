@@ -7,11 +7,13 @@
 
 #include "core/drainage.h"
 #include "core/mesh.h"
+#include "kernels/sphere.h"
 #include "printing/star_triangulation.h"
 
 namespace aerate {
 
-// Where a tube opens into a ball: the points of `ring_on_ball`, counter-clockwise seen from outside the ball.
+// Where a tube opens into a ball: the points of `VoidShape::rim`, counter-clockwise seen from outside the
+// ball.
 struct Opening {
   Tube tube;
   TubeEnd end = TubeEnd::start;  // the end at which the ball is

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/void_shape.h"
 #include "printing/roof_top.h"
 #include "printing/rounding.h"
 
@@ -28,7 +29,7 @@ std::size_t sides_of(const Tube& tube, double tolerance) {
 
 Opening opening_of(const Tube& tube, TubeEnd end, const Sphere& ball, const Roof& roof, std::size_t sides) {
   Opening opening{shrunk(tube), end, {}};
-  opening.ring = ring_on_ball(opening.tube, end, shrunk(roof, ball), roof.up, sides);
+  opening.ring = VoidShape(shrunk(roof, ball), roof).rim(opening.tube, end, sides);
   // Counter-clockwise seen from outside the ball.
   if (end == TubeEnd::end) std::reverse(opening.ring.begin(), opening.ring.end());
   return opening;

@@ -19,7 +19,7 @@ namespace {
 
 // Where a hole has come out, as far from the surface as it is wide.
 Vec3d mouth_of(const Tube& tube) {
-  return tube.end + axis_of(tube) * tube.radius;
+  return tube.end + direction_of(tube) * tube.radius;
 }
 
 // Edges by kind, and vertices - edges + triangles.

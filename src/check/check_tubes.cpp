@@ -14,7 +14,7 @@
 #include "check/measure_errors.h"
 #include "check/tube_cut.h"
 #include "core/segment_distance.h"
-#include "core/top_opening.h"
+#include "core/void_shape.h"
 
 namespace aerate {
 namespace {
@@ -34,7 +34,7 @@ double rounding_of(const Mesh& mesh, const Triangle& t) {
 
 // What is wrong with the part of a tube.
 std::optional<std::string> flaw_of_tube(const Mesh& mesh, const SolidPart& part, const Tube& tube) {
-  const Vec3d axis = axis_of(tube);
+  const Vec3d axis = direction_of(tube);
   const auto from_axis = [&](Vec3d p) {
     const Vec3d from_start = p - tube.start;
     return from_start - axis * dot(from_start, axis);
@@ -73,17 +73,15 @@ struct PlacedTube {
 
 // Voids are opened below their roofs, or straight up out of their tops.
 void require_below_roof(const Packing& packing, const Channel& channel, std::size_t i) {
-  const Sphere& from = packing.spheres[channel.from];
-  const Sphere& to = packing.spheres[channel.to];
-  const Roof& roof = packing.limits.roof;
-  const bool is_out_of_top = comes_out_of_top(channel.tube, from, roof);
-  if ((!is_out_of_top && !opens_below_roof(channel.tube, TubeEnd::start, from, roof)) ||
-      !opens_below_roof(channel.tube, TubeEnd::end, to, roof))
+  const VoidShape from(packing.spheres[channel.from], packing.limits.roof);
+  const VoidShape to(packing.spheres[channel.to], packing.limits.roof);
+  if (!from.may_open(channel.tube, TubeEnd::start) || !to.may_open(channel.tube, TubeEnd::end))
     fail_check("channel {}: it opens into a roof", i);
 }
 
 void require_below_roof(const Packing& packing, const EscapeHole& hole, std::size_t i) {
-  if (!opens_below_roof(hole.tube, TubeEnd::start, packing.spheres[hole.from], packing.limits.roof))
+  const VoidShape from(packing.spheres[hole.from], packing.limits.roof);
+  if (!from.opens_below_roof(hole.tube, TubeEnd::start))
     fail_check("escape hole {}: it opens into a roof", i);
 }
 
@@ -110,7 +108,7 @@ void require_gaps(const Packing& packing, const DrainagePlan& plan) {
     for (std::uint32_t ball = 0; ball < balls.size(); ++ball) {
       if (ball == tubes[i].from || ball == tubes[i].to) continue;
       const double distance =
-          distance_to_void({tube.start, tube.end}, packing.limits.roof, balls[ball]) - tube.radius;
+          VoidShape(balls[ball], packing.limits.roof).distance_to({tube.start, tube.end}) - tube.radius;
       if (distance < gap - kLimitError)
         fail_check("a channel or hole is {:.9g} mm from void {}, the gap is {:.9g} mm", distance, ball, gap);
     }

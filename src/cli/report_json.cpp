@@ -2,7 +2,7 @@
 
 #include "cli/json_parts.h"
 #include "cli/reports.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "printing/slicers/slicers.h"
 #include "printing/strength.h"
 

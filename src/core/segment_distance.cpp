@@ -26,25 +26,6 @@ double distance_to_point(const Segment& segment, Vec3d point) {
   return std::sqrt(kernels::distance_squared_to_segment(point, segment.start, segment.end));
 }
 
-// The room is a union of balls on the spine. Distance along a line to a convex set is a convex function, the
-// balls' radii fall evenly, so the least difference is found by thirds.
-double distance_to_void(const Segment& segment, const Roof& roof, const Sphere& planned) {
-  const auto from_ball = [&](double height) {
-    return distance_to_point(segment, planned.centre + roof.up * height) - planned.radius +
-           height * roof.sine;
-  };
-  double low = 0, high = roof.spine(planned.radius);
-  double nearest = std::min(from_ball(low), from_ball(high));
-  for (const double precision = 1e-9 * high; high - low > precision;) {
-    const double third = (high - low) / 3;
-    const double lower = from_ball(low + third), upper = from_ball(high - third);
-    nearest = std::min({nearest, lower, upper});
-    if (lower <= upper) high -= third;
-    if (upper <= lower) low += third;
-  }
-  return nearest;
-}
-
 double distance_between(const Segment& a, const Segment& b) {
   const Vec3d da = a.end - a.start;
   const Vec3d db = b.end - b.start;

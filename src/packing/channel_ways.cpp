@@ -5,13 +5,13 @@
 #include <tbb/parallel_for.h>
 #include <utility>
 
-#include "core/top_opening.h"
+#include "packing/pools.h"
 #include "packing/tube_through.h"
 
 namespace aerate {
 namespace {
 
-// Where the axis of a channel passes the balls that it joins: so many radii above the centre of the lower
+// Where the axis of a channel passes the voids that it joins: so many radii above the centre of the lower
 // one, and below that of the upper.
 struct Attachment {
   double lower, upper;
@@ -34,77 +34,64 @@ constexpr std::size_t kVoidsPerPiece = 256;
 
 class ChannelFinder {
  public:
-  ChannelFinder(std::span<const Sphere> spheres, const Roof& roof, double radius, double longest)
-      : spheres_(spheres), roof_(roof), radius_(radius), longest_(longest) {}
+  ChannelFinder(std::span<const VoidShape> voids, const Roof& roof, double radius, double longest)
+      : voids_(voids), roof_(roof), radius_(radius), longest_(longest) {}
 
-  // All from a ball to others that come after it.
-  std::vector<ChannelWay> from(std::uint32_t ball, std::span<const std::uint32_t> neighbours) const {
+  // All from a void to others that come after it.
+  std::vector<ChannelWay> from(std::uint32_t at, std::span<const TubeClearance::Neighbour> neighbours) const {
     std::vector<ChannelWay> found;
-    for (const std::uint32_t other : neighbours) {
-      for (std::size_t way = 0; way < kWays && other > ball; ++way) {
-        const auto channel = find(ball, other, way);
-        if (channel) found.push_back({*channel, {sill_of(*channel, roof_.up), sill_of(*channel, -roof_.up)}});
+    for (const auto& [gap, other] : neighbours) {
+      if (other < at) continue;
+      const auto height_of = [&](std::uint32_t i) { return dot(voids_[i].centre(), roof_.up); };
+      const bool is_lower = height_of(at) <= height_of(other);
+      const std::uint32_t a = is_lower ? at : other, b = is_lower ? other : at;
+      const VoidShape& lower = voids_[a];
+      const VoidShape& upper = voids_[b];
+      for (std::size_t way = 0; way < kWays; ++way) {
+        const auto tube =
+            way == kOutOfTop ? out_of_top(lower, upper) : through(lower, upper, kAttachments[way]);
+        if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
+            !lower.may_open(*tube, TubeEnd::start) || !upper.may_open(*tube, TubeEnd::end))
+          continue;
+        found.push_back({{a, b, *tube},
+                         {sill_of(*tube, lower, upper, roof_.up), sill_of(*tube, lower, upper, -roof_.up)}});
       }
     }
     return found;
   }
 
  private:
-  double sill_of(const Channel& channel, Vec3d up) const {
-    return aerate::sill_of(channel.tube, spheres_[channel.from], spheres_[channel.to], up);
-  }
-
-  std::optional<Channel> find(std::uint32_t a, std::uint32_t b, std::size_t way) const {
-    const Vec3d up = roof_.up;
-    const double height_a = dot(spheres_[a].centre, up), height_b = dot(spheres_[b].centre, up);
-    if (height_a > height_b || (height_a == height_b && a > b)) std::swap(a, b);
-    const Sphere& lower = spheres_[a];
-    const Sphere& upper = spheres_[b];
-    if (way == kOutOfTop) return out_of_top(a, b);
-    const Attachment where = kAttachments[way];
-    Vec3d inside_lower = lower.centre + up * (where.lower * lower.radius);
-    const Vec3d inside_upper = upper.centre + up * (where.upper * upper.radius);
+  std::optional<Tube> through(const VoidShape& lower, const VoidShape& upper, Attachment where) const {
+    const Vec3d inside_lower = lower.centre() + roof_.up * (where.lower * lower.radius());
+    const Vec3d inside_upper = upper.centre() + roof_.up * (where.upper * upper.radius());
     // Off the centres only where that leaves a channel which does not fall from the lower to the upper.
-    if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, up) < -kLevel)
+    if ((where.lower != 0 || where.upper != 0) && dot(inside_upper - inside_lower, roof_.up) < -kLevel)
       return std::nullopt;
-    inside_lower = below_roof(lower, inside_lower, inside_upper);
-    const auto tube = tube_between(lower, upper, inside_lower, inside_upper, radius_);
-    if (!tube || length(tube->end - tube->start) > longest_ || !is_bridged(*tube, roof_) ||
-        !opens_below_roof(*tube, TubeEnd::start, lower, roof_) ||
-        !opens_below_roof(*tube, TubeEnd::end, upper, roof_)) {
-      return std::nullopt;
-    }
-    return Channel{a, b, *tube};
+    return tube_between(lower, upper, below_roof(lower, inside_lower, inside_upper), inside_upper, radius_);
   }
 
-  // Where a channel from a ball with a roof to a higher place has to start so that it leaves the ball below
+  std::optional<Tube> out_of_top(const VoidShape& lower, const VoidShape& upper) const {
+    if (!lower.has_top_for(radius_)) return std::nullopt;
+    const Vec3d start = lower.centre() + roof_.up * lower.top_opening_height(radius_);
+    return tube_into(upper, start, roof_.up, radius_);
+  }
+
+  // Where a channel from a void with a roof to a higher place has to start so that it leaves the void below
   // the roof: `inside`, or so much beside it, across the channel and downwards.
-  Vec3d below_roof(const Sphere& ball, Vec3d inside, Vec3d to) const {
-    if (!roof_.shapes(ball.radius)) return inside;
+  Vec3d below_roof(const VoidShape& shape, Vec3d inside, Vec3d to) const {
+    if (!shape.has_roof()) return inside;
     for (int i = 0; i < kMostShifts; ++i) {
       const Vec3d along = to - inside;
-      const auto way = way_below_roof(ball, roof_, along * (1 / length(along)), radius_);
+      const auto way = shape.way_below_roof(along * (1 / length(along)), radius_);
       if (!way) return inside;
-      const double excess = dot(inside - ball.centre, way->across) - way->highest;
+      const double excess = dot(inside - shape.centre(), way->across) - way->highest;
       if (excess <= 0) return inside;
       inside = inside - way->across * excess;
     }
     return inside;
   }
 
-  std::optional<Channel> out_of_top(std::uint32_t lower, std::uint32_t upper) const {
-    const Sphere& ball = spheres_[lower];
-    if (!has_top_for(radius_, ball, roof_)) return std::nullopt;
-    const Vec3d start = ball.centre + roof_.up * top_opening_height(radius_, ball.radius, roof_);
-    const auto tube = tube_into(spheres_[upper], start, roof_.up, radius_);
-    if (!tube || length(tube->end - tube->start) > longest_ ||
-        !opens_below_roof(*tube, TubeEnd::end, spheres_[upper], roof_)) {
-      return std::nullopt;
-    }
-    return Channel{lower, upper, *tube};
-  }
-
-  std::span<const Sphere> spheres_;
+  std::span<const VoidShape> voids_;
   const Roof& roof_;
   double radius_;
   double longest_;
@@ -112,23 +99,23 @@ class ChannelFinder {
 
 }  // namespace
 
-ChannelWays::ChannelWays(std::span<const Sphere> spheres, const Roof& roof, double radius, double longest,
+ChannelWays::ChannelWays(std::span<const VoidShape> voids, const Roof& roof, double radius, double longest,
                          const TubeClearance& clearance, Monitor& monitor)
-    : clearance_(clearance), of_ball_(spheres.size()) {
-  const ChannelFinder finder(spheres, roof, radius, longest);
+    : clearance_(clearance), of_void_(voids.size()) {
+  const ChannelFinder finder(voids, roof, radius, longest);
   std::vector<std::vector<ChannelWay>> of_piece(kVoidsPerPiece);
-  for (std::size_t first = 0; first < spheres.size(); first += kVoidsPerPiece) {
+  for (std::size_t first = 0; first < voids.size(); first += kVoidsPerPiece) {
     monitor.check_interrupted();
-    const std::size_t count = std::min(kVoidsPerPiece, spheres.size() - first);
+    const std::size_t count = std::min(kVoidsPerPiece, voids.size() - first);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-      const auto ball = static_cast<std::uint32_t>(first + i);
-      of_piece[i] = finder.from(ball, clearance.neighbours(ball));
+      const auto at = static_cast<std::uint32_t>(first + i);
+      of_piece[i] = finder.from(at, clearance.neighbours(at));
     });
     for (std::size_t i = 0; i < count; ++i) ways_.insert(ways_.end(), of_piece[i].begin(), of_piece[i].end());
   }
   for (std::uint32_t way = 0; way < ways_.size(); ++way) {
-    of_ball_[ways_[way].channel.from].push_back(way);
-    of_ball_[ways_[way].channel.to].push_back(way);
+    of_void_[ways_[way].channel.from].push_back(way);
+    of_void_[ways_[way].channel.to].push_back(way);
   }
   free_.resize(ways_.size());
 }

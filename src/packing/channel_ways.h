@@ -9,8 +9,7 @@
 
 #include "core/drainage.h"
 #include "core/monitor.h"
-#include "core/roof.h"
-#include "kernels/sphere.h"
+#include "core/void_shape.h"
 #include "packing/tube_clearance.h"
 
 namespace aerate {
@@ -21,9 +20,7 @@ struct ChannelWay {
   Channel channel;
   std::array<double, 2> sills;  // that liquid has to reach to pass it: in print orientation, and upside down
 
-  std::uint32_t other_than(std::uint32_t ball) const {
-    return channel.from == ball ? channel.to : channel.from;
-  }
+  std::uint32_t other_than(std::uint32_t at) const { return channel.from == at ? channel.to : channel.from; }
 };
 
 // All of them: a few heights at which their axis may leave the lower void and enter the upper, and straight
@@ -32,7 +29,7 @@ struct ChannelWay {
 class ChannelWays {
  public:
   // Channels of this radius (mm), none longer than `longest`. Clearance must outlive this.
-  ChannelWays(std::span<const Sphere> spheres, const Roof& roof, double radius, double longest,
+  ChannelWays(std::span<const VoidShape> voids, const Roof& roof, double radius, double longest,
               const TubeClearance& clearance, Monitor& monitor);
 
   // Those between the same two voids follow each other, by what they are to be preferred.
@@ -40,7 +37,7 @@ class ChannelWays {
   const ChannelWay& operator[](std::size_t way) const { return ways_[way]; }
 
   // Those from or to a void.
-  std::span<const std::uint32_t> of(std::uint32_t ball) const { return of_ball_[ball]; }
+  std::span<const std::uint32_t> of(std::uint32_t at) const { return of_void_[at]; }
 
   // Does the channel of a way keep clear of everything but other channels? Remembered.
   bool is_free(std::size_t way);
@@ -48,7 +45,7 @@ class ChannelWays {
  private:
   const TubeClearance& clearance_;
   std::vector<ChannelWay> ways_;
-  std::vector<std::vector<std::uint32_t>> of_ball_;
+  std::vector<std::vector<std::uint32_t>> of_void_;
   std::vector<std::optional<bool>> free_;  // by way
 };
 

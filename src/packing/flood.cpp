@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "packing/pools.h"
-#include "packing/tube_through.h"
 
 namespace aerate {
 namespace {
@@ -23,9 +22,10 @@ struct ComesAfter {
 
 class Flood {
  public:
-  Flood(const FloodedVoids& voids, Vec3d up) : voids_(voids), up_(up), channels_of_(voids.spheres.size()) {
-    for (const Channel& channel : voids.plan.channels) {
-      const double sill = sill_of(channel.tube, voids.spheres[channel.from], voids.spheres[channel.to], up);
+  Flood(const DrainageTask& task, const Draft& draft, Vec3d up)
+      : task_(task), draft_(draft), up_(up), channels_of_(task.voids.size()) {
+    for (const Channel& channel : draft.tubes.plan().channels) {
+      const double sill = sill_of(channel.tube, task.voids[channel.from], task.voids[channel.to], up);
       channels_of_[channel.from].push_back({channel.to, sill});
       channels_of_[channel.to].push_back({channel.from, sill});
     }
@@ -33,7 +33,7 @@ class Flood {
 
   std::vector<FloodStep> run(const std::function<bool(std::size_t)>& make) {
     push_lowest_holes();
-    std::vector<FloodStep> steps(voids_.spheres.size(), {kInfinity, 0, kOutside, kOutside, kExistingChannel});
+    std::vector<FloodStep> steps(task_.voids.size(), {kInfinity, 0, kOutside, kOutside, kExistingChannel});
     while (!queue_.empty()) {
       const FloodStep next = queue_.top();
       queue_.pop();
@@ -53,29 +53,30 @@ class Flood {
 
   void push_lowest_holes() {
     std::map<std::uint32_t, const EscapeHole*> lowest_of;
-    for (const EscapeHole& hole : voids_.plan.holes) {
-      const EscapeHole*& lowest = lowest_of[hole.network];
+    for (const EscapeHole& hole : draft_.tubes.plan().holes) {
+      const EscapeHole*& lowest = lowest_of[draft_.network_of[hole.from]];
       if (lowest == nullptr || dot(hole.tube.end, up_) < dot(lowest->tube.end, up_)) lowest = &hole;
     }
     for (const auto& [network, hole] : lowest_of)
       queue_.push(
-          {sill_of_hole(*hole, voids_.spheres[hole->from], up_), 0, hole->from, kOutside, kExistingChannel});
+          {sill_of_hole(*hole, task_.voids[hole->from], up_), 0, hole->from, kOutside, kExistingChannel});
   }
 
   void push_ways(std::uint32_t from, double height) {
     for (const auto& [to, sill] : channels_of_[from])
       queue_.push({std::max(height, sill), 0, to, from, kExistingChannel});
-    const std::size_t orientation = dot(up_, voids_.plan.roof.up) > 0 ? 0 : 1;
-    for (const std::uint32_t index : voids_.ways.of(from)) {
-      const ChannelWay& way = voids_.ways[index];
+    const std::size_t orientation = dot(up_, task_.up()) > 0 ? 0 : 1;
+    for (const std::uint32_t index : task_.ways.of(from)) {
+      const ChannelWay& way = task_.ways[index];
       const std::uint32_t to = way.other_than(from);
-      if (voids_.network_of[to] != voids_.network_of[from]) continue;
+      if (draft_.network_of[to] != draft_.network_of[from]) continue;
       const Tube& tube = way.channel.tube;
       queue_.push({std::max(height, way.sills[orientation]), length(tube.end - tube.start), to, from, index});
     }
   }
 
-  const FloodedVoids& voids_;
+  const DrainageTask& task_;
+  const Draft& draft_;
   Vec3d up_;
   std::vector<std::vector<ExistingChannel>> channels_of_;  // before the flood
   std::priority_queue<FloodStep, std::vector<FloodStep>, ComesAfter> queue_;
@@ -83,9 +84,9 @@ class Flood {
 
 }  // namespace
 
-std::vector<FloodStep> flood(const FloodedVoids& voids, Vec3d up,
+std::vector<FloodStep> flood(const DrainageTask& task, const Draft& draft, Vec3d up,
                              const std::function<bool(std::size_t)>& make) {
-  return Flood(voids, up).run(make);
+  return Flood(task, draft, up).run(make);
 }
 
 }  // namespace aerate

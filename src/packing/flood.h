@@ -4,11 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <span>
 #include <vector>
 
-#include "core/drainage.h"
-#include "packing/channel_ways.h"
+#include "packing/drainage_draft.h"
 
 namespace aerate {
 
@@ -21,17 +19,10 @@ struct FloodStep {
 };
 inline constexpr std::size_t kExistingChannel = std::numeric_limits<std::size_t>::max();
 
-struct FloodedVoids {
-  std::span<const Sphere> spheres;
-  std::span<const std::uint32_t> network_of;  // kOutside for those that are left out
-  const DrainagePlan& plan;                   // its holes and channels so far
-  const ChannelWays& ways;
-};
-
-// Finds those ways, by void, for all that can be reached from the lowest hole of their network, in order of
-// that height; `up` is against gravity. `make` is called for each channel that is not there yet and would be
-// the next; the flood takes it if that returns true.
-std::vector<FloodStep> flood(const FloodedVoids& voids, Vec3d up,
+// Finds those ways, by void, for all that can be reached from the lowest hole of their network, along
+// channels that are there and those that can be made, in order of that height; `up` is against gravity.
+// `make` is called for each channel that would be the next; the flood takes it if that returns true.
+std::vector<FloodStep> flood(const DrainageTask& task, const Draft& draft, Vec3d up,
                              const std::function<bool(std::size_t way)>& make);
 
 }  // namespace aerate

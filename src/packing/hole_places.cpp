@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <sstream>
-#include <string>
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
+#include "packing/placed_tubes.h"
 #include "packing/pools.h"
 #include "packing/tube_through.h"
 
@@ -23,14 +22,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLongestInDiameters = 3;
 constexpr double kLongestInWalls = 3;
 
-// Balls that are looked at for one hole, and directions from each.
-constexpr std::size_t kMostBalls = 48;
+// Voids that are looked at for one hole, and directions from each.
+constexpr std::size_t kMostVoids = 48;
 constexpr int kDirections = 64;
 
 // Places of the axis in each direction.
 constexpr std::size_t kPoints = 3;
 
-// A ball is roomy if the distance of its centre from the hole's rim is at least this share of that between
+// A void is roomy if the distance of its centre from the hole's rim is at least this share of that between
 // the axes of the hole and of a channel: the two then open into it at 113 degrees from each other or less.
 constexpr double kRoomyShare = 0.6;
 
@@ -42,10 +41,6 @@ constexpr double kLengthWeight = 0.2;  // a millimetre of tube for each millimet
 // Near its outer end a tube is nearer to the surface than the wall. It comes up to it no flatter than this:
 // the sine of 30 degrees.
 constexpr double kLeastSlope = 0.5;
-
-Vec3d normalised(Vec3d v) {
-  return v * (1 / length(v));
-}
 
 // Points spread evenly over the half of the unit sphere about `axis`, which is the first of them.
 std::vector<Vec3d> directions_about(Vec3d axis) {
@@ -61,26 +56,20 @@ std::vector<Vec3d> directions_about(Vec3d axis) {
   return directions;
 }
 
-std::string to_text(Vec3d p) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2) << '(' << p.x << ", " << p.y << ", " << p.z << ") mm";
-  return text.str();
-}
-
 }  // namespace
 
 double longest_hole(const DrainageRequest& request, const PackingLimits& limits) {
   return kLongestInDiameters * 2 * request.hole_radius + kLongestInWalls * limits.wall;
 }
 
-HolePlaces::HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres,
+HolePlaces::HolePlaces(const kernels::WindingView& outward, std::span<const VoidShape> voids,
                        const PackingLimits& limits, const DrainageRequest& request,
                        const TubeClearance& clearance)
-    : spheres_(spheres), limits_(limits), request_(request), clearance_(clearance), outward_(outward) {}
+    : voids_(voids), limits_(limits), request_(request), clearance_(clearance), outward_(outward) {}
 
 // Ends the tube where its axis meets the surface.
 bool HolePlaces::reach_surface(EscapeHole& hole) const {
-  const Vec3d axis = normalised(hole.tube.end - hole.tube.start);
+  const Vec3d axis = direction_of(hole.tube);
   const auto hit = clearance_.first_hit(hole.tube.start, axis, longest_hole(request_, limits_));
   if (hit) hole.tube.end = hole.tube.start + axis * *hit;
   return hit.has_value();
@@ -89,24 +78,23 @@ bool HolePlaces::reach_surface(EscapeHole& hole) const {
 double HolePlaces::showing(Vec3d place) const {
   const Vec3d up = limits_.roof.up;
   const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d back = normalised(cross(up, side));
+  const Vec3d across = cross(up, side);
+  const Vec3d back = across * (1 / length(across));
   const Vec3d normal = clearance_.normal_near(place);
   return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
 }
 
 bool HolePlaces::is_sound(const EscapeHole& hole) {
-  if (!clearance_.keeps_gap_to_tubes(hole.tube, hole.from, hole.from)) return false;
   const Vec3d start = hole.tube.start, end = hole.tube.end;
   const auto [known, is_new] = sound_.try_emplace(
       {static_cast<double>(hole.from), start.x, start.y, start.z, end.x, end.y, end.z}, false);
-  if (is_new) known->second = is_sound_alone(hole);
+  if (is_new) known->second = look_whether_sound(hole);
   return known->second;
 }
 
-// But for other tubes.
-bool HolePlaces::is_sound_alone(const EscapeHole& hole) const {
+bool HolePlaces::look_whether_sound(const EscapeHole& hole) const {
   const Tube& tube = hole.tube;
-  const Vec3d axis = normalised(tube.end - tube.start);
+  const Vec3d axis = direction_of(tube);
   const double needed = tube.radius + limits_.wall;
   // Outside there has to be room, as wide as the hole.
   for (const double beyond : {tube.radius, 2 * tube.radius}) {
@@ -118,25 +106,33 @@ bool HolePlaces::is_sound_alone(const EscapeHole& hole) const {
          clearance_.keeps_wall_on_way_out(tube, kLeastSlope);
 }
 
-// A point of the axis of a tube that leaves a ball in this direction: through the centre, or halfway or all
+// The tube from a void through a point inside it, a millimetre long: nullopt if it may not open there.
+std::optional<Tube> HolePlaces::tube_from(const VoidShape& shape, Vec3d inside, Vec3d direction) const {
+  auto tube = tube_out_of(shape, inside, direction, 1, request_.hole_radius);
+  if (tube && (!shape.opens_below_roof(*tube, TubeEnd::start) || !is_bridged(*tube, limits_.roof)))
+    tube.reset();
+  return tube;
+}
+
+// A point of the axis of a tube that leaves a void in this direction: through the centre, or halfway or all
 // the way to where its side would graze the ball, lowered in the sense of `down`. Under a roof it is measured
 // from the highest that leaves the ball below it. nullopt if that is the same as the one before.
-std::optional<Vec3d> HolePlaces::start_inside(const Sphere& ball, Vec3d direction, Vec3d down,
+std::optional<Vec3d> HolePlaces::start_inside(const VoidShape& shape, Vec3d direction, Vec3d down,
                                               std::size_t point) const {
   // A trifle less than the widest, so that rounding does not matter.
-  const double farthest = (kWidestTubeShare * ball.radius - request_.hole_radius) * (1 - 1e-9);
+  const double farthest = (kWidestTubeShare * shape.radius() - request_.hole_radius) * (1 - 1e-9);
   const double share = static_cast<double>(point) / (kPoints - 1);
-  if (limits_.roof.shapes(ball.radius) && dot(down, limits_.roof.up) > 0) {
-    const auto way = way_below_roof(ball, limits_.roof, direction, request_.hole_radius);
+  if (shape.has_roof() && dot(down, limits_.roof.up) > 0) {
+    const auto way = shape.way_below_roof(direction, request_.hole_radius);
     if (!way) return std::nullopt;
     const double highest = std::min(way->highest, 0.0);
     if (highest < -farthest || (highest == -farthest && point > 0)) return std::nullopt;
-    return ball.centre + way->across * (highest - share * (highest + farthest));
+    return shape.centre() + way->across * (highest - share * (highest + farthest));
   }
   if (farthest * share == 0 && point > 0) return std::nullopt;
   // Lowered so far that the tube's axis passes the centre at that distance.
   const double across = std::sqrt(std::max(1e-6, 1 - dot(direction, down) * dot(direction, down)));
-  return ball.centre + down * std::min(farthest * share / across, ball.radius * 0.99);
+  return shape.centre() + down * std::min(farthest * share / across, shape.radius() * 0.99);
 }
 
 HolePlaces::Ranking::Ranking(const HolePlaces& places, std::span<Place* const> candidates, Vec3d down,
@@ -165,20 +161,20 @@ std::optional<EscapeHole> HolePlaces::Ranking::next() {
   return std::nullopt;
 }
 
-HolePlaces::Ranking HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec3d down, double share) {
+HolePlaces::Ranking HolePlaces::ranked(std::span<const std::uint32_t> voids, Vec3d down, double share) {
   const Vec3d up = -down;
-  const auto bottom_of = [&](std::uint32_t i) { return dot(spheres_[i].centre, up) - spheres_[i].radius; };
+  const auto bottom_of = [&](std::uint32_t i) { return voids_[i].bottom(up); };
   double lowest = kInfinity;
   double highest = -lowest;
   std::vector<std::uint32_t> wide;
-  for (const std::uint32_t i : balls) {
+  for (const std::uint32_t i : voids) {
     lowest = std::min(lowest, bottom_of(i));
-    highest = std::max(highest, dot(spheres_[i].centre, up) + spheres_[i].radius);
-    if (request_.hole_radius <= kWidestTubeShare * spheres_[i].radius) wide.push_back(i);
+    highest = std::max(highest, -voids_[i].bottom(down));
+    if (voids_[i].takes_tube(request_.hole_radius)) wide.push_back(i);
   }
-  // Beside a hole in a small ball there is no room for a channel.
+  // Beside a hole in a small void there is no room for a channel.
   const auto is_roomy = [&](std::uint32_t i) {
-    const double hole = request_.hole_radius, radius = spheres_[i].radius;
+    const double hole = request_.hole_radius, radius = voids_[i].radius();
     const double to_rim = std::sqrt(std::max(0.0, radius * radius - hole * hole));
     return to_rim >= kRoomyShare * tube_spacing(hole, request_.channel_radius);
   };
@@ -186,7 +182,7 @@ HolePlaces::Ranking HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec
     std::erase_if(wide, [&](std::uint32_t i) { return !is_roomy(i); });
   std::stable_sort(wide.begin(), wide.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return bottom_of(a) < bottom_of(b); });
-  if (wide.size() > kMostBalls) wide.resize(kMostBalls);
+  if (wide.size() > kMostVoids) wide.resize(kMostVoids);
   const double height = highest - lowest;
   while (wide.size() > 4 && bottom_of(wide.back()) > lowest + share * height) wide.pop_back();
 
@@ -198,27 +194,27 @@ HolePlaces::Ranking HolePlaces::ranked(std::span<const std::uint32_t> balls, Vec
   return {*this, candidates, down, lowest, height};
 }
 
-HolePlaces::PlacesByBall& HolePlaces::places_of(Vec3d down) {
+HolePlaces::PlacesByVoid& HolePlaces::places_of(Vec3d down) {
   return places_[dot(down, limits_.roof.up) > 0 ? 1 : 0];
 }
 
-// Finds the places of those balls for which that was not done.
-void HolePlaces::find_places(std::span<const std::uint32_t> balls, Vec3d down) {
-  PlacesByBall& places = places_of(down);
-  places.resize(spheres_.size());
+// Finds the places of those voids for which that was not done.
+void HolePlaces::find_places(std::span<const std::uint32_t> voids, Vec3d down) {
+  PlacesByVoid& places = places_of(down);
+  places.resize(voids_.size());
   std::vector<Vec3d> directions = directions_about(down);
   // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
   if (limits_.roof.limits_ceilings() && dot(down, limits_.roof.up) > 0) {
     const std::vector<Vec3d> back = directions_about(-down);
     directions.insert(directions.end(), back.begin(), back.end());
   }
-  tbb::parallel_for(std::size_t{0}, balls.size(), [&](std::size_t i) {
-    std::optional<std::vector<Place>>& own = places[balls[i]];
+  tbb::parallel_for(std::size_t{0}, voids.size(), [&](std::size_t i) {
+    std::optional<std::vector<Place>>& own = places[voids[i]];
     if (own) return;
     own.emplace();
     for (const Vec3d direction : directions) {
       for (std::size_t point = 0; point < kPoints; ++point) {
-        const auto place = place_of(balls[i], direction, down, point);
+        const auto place = place_of(voids[i], direction, down, point);
         if (place) own->push_back(*place);
       }
     }
@@ -227,16 +223,13 @@ void HolePlaces::find_places(std::span<const std::uint32_t> balls, Vec3d down) {
 
 std::optional<HolePlaces::Place> HolePlaces::place_of(std::uint32_t from, Vec3d direction, Vec3d down,
                                                       std::size_t point) const {
-  const Sphere& ball = spheres_[from];
-  const auto inside = start_inside(ball, direction, down, point);
+  const VoidShape& shape = voids_[from];
+  const auto inside = start_inside(shape, direction, down, point);
   if (!inside) return std::nullopt;
-  const auto tube = tube_out_of(ball, *inside, direction, 1, request_.hole_radius);
-  if (!tube || !opens_below_roof(*tube, TubeEnd::start, ball, limits_.roof) ||
-      !is_bridged(*tube, limits_.roof)) {
-    return std::nullopt;
-  }
+  const auto tube = tube_from(shape, *inside, direction);
+  if (!tube) return std::nullopt;
   return Place{.hole = {from, *tube, 0},
-               .sill = opening_floor(*tube, TubeEnd::start, ball, -down),
+               .sill = shape.opening_floor(*tube, TubeEnd::start, -down),
                .length = limits_.wall};
 }
 
@@ -246,7 +239,7 @@ void HolePlaces::look_at(Place& place, Vec3d down) const {
   place.is_looked_at = true;
   const Tube& tube = place.hole.tube;
   if (reach_surface(place.hole)) {
-    place.sill = sill_of_hole(place.hole, spheres_[place.hole.from], -down);
+    place.sill = sill_of_hole(place.hole, voids_[place.hole.from], -down);
     place.showing = showing(tube.end);
     place.length = length(tube.end - tube.start);
   } else {
@@ -254,35 +247,32 @@ void HolePlaces::look_at(Place& place, Vec3d down) const {
   }
 }
 
-std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> balls) const {
+std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> voids) const {
   const Vec3d on_surface = clearance_.nearest_on_surface(place);
   const double off = length(on_surface - place);
   if (off > 2 * request_.hole_radius) {
+    const auto to_text = [](Vec3d p) { return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", p.x, p.y, p.z); };
     const bool outside = outward_.winding_number(place) == 0;
-    throw UsageError("an escape hole is asked for at " + to_text(place) + ", which is " +
-                         std::to_string(off).substr(0, 5) + " mm " +
-                         (outside ? "outside the model" : "inside the model, away from its surface"),
+    throw UsageError(fmt::format("an escape hole is asked for at {}, which is {} mm {}", to_text(place),
+                                 fmt::format("{:f}", off).substr(0, 5),
+                                 outside ? "outside the model" : "inside the model, away from its surface"),
                      "the surface is nearest at " + to_text(on_surface));
   }
   std::vector<EscapeHole> holes;
-  for (const std::uint32_t from : balls) {
-    const Sphere& ball = spheres_[from];
+  for (const std::uint32_t from : voids) {
+    const VoidShape& shape = voids_[from];
     constexpr int kDistances = 4;
     for (int i = 0; i < 1 + 6 * kDistances; ++i) {
       // The centre, and points around it along the axes.
       const int distance_index = (i + 5) / 6;
-      const double shift = ball.radius * 0.85 * distance_index / kDistances;
+      const double shift = shape.radius() * 0.85 * distance_index / kDistances;
       constexpr std::array<Vec3d, 6> kAxes{Vec3d{0, 0, -1}, Vec3d{0, 0, 1}, Vec3d{1, 0, 0},
                                            Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, -1, 0}};
-      const Vec3d inside = ball.centre + kAxes[static_cast<std::size_t>((i + 5) % 6)] * shift;
+      const Vec3d inside = shape.centre() + kAxes[static_cast<std::size_t>((i + 5) % 6)] * shift;
       const double distance = length(on_surface - inside);
-      if (distance <= ball.radius) continue;
-      const auto tube =
-          tube_out_of(ball, inside, (on_surface - inside) * (1 / distance), 1, request_.hole_radius);
-      if (!tube || !opens_below_roof(*tube, TubeEnd::start, ball, limits_.roof) ||
-          !is_bridged(*tube, limits_.roof)) {
-        continue;
-      }
+      if (distance <= shape.radius()) continue;
+      const auto tube = tube_from(shape, inside, (on_surface - inside) * (1 / distance));
+      if (!tube) continue;
       EscapeHole hole{from, *tube, 0};
       if (reach_surface(hole) && length(hole.tube.end - on_surface) < request_.hole_radius)
         holes.push_back(hole);

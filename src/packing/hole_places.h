@@ -21,13 +21,13 @@ namespace aerate {
 // No hole is longer than this, mm.
 double longest_hole(const DrainageRequest& request, const PackingLimits& limits);
 
-// Where the surface of a model can be opened. What was found is remembered: the same balls are looked at for
+// Where the surface of a model can be opened. What was found is remembered: the same voids are looked at for
 // many plans.
 class HolePlaces {
   struct Place;
 
  public:
-  // Tubes that lead out of some balls, the best first. What a tube costs at least is known before its way to
+  // Tubes that lead out of some voids, the best first. What a tube costs at least is known before its way to
   // the surface, so that is looked for only where it may be the best of those left.
   class Ranking {
    public:
@@ -44,7 +44,7 @@ class HolePlaces {
         return std::tie(a.cost, a.number) > std::tie(b.cost, b.number);
       }
     };
-    // `lowest` and `height` are those of the balls.
+    // `lowest` and `height` are those of the voids.
     Ranking(const HolePlaces& places, std::span<Place* const> candidates, Vec3d down, double lowest,
             double height);
     double cost_of(const Place& place) const;
@@ -57,22 +57,22 @@ class HolePlaces {
   };
 
   // `outward`: see DrainableModel.
-  HolePlaces(const kernels::WindingView& outward, std::span<const Sphere> spheres,
+  HolePlaces(const kernels::WindingView& outward, std::span<const VoidShape> voids,
              const PackingLimits& limits, const DrainageRequest& request, const TubeClearance& clearance);
 
-  // Tubes that lead out of some of the balls. `down` is the way liquid runs: the direction of gravity as
+  // Tubes that lead out of some of the voids. `down` is the way liquid runs: the direction of gravity as
   // printed for the low hole, the opposite for the high one. A place is the better, the lower it lies in that
   // sense, the less it shows (facing down or backwards in print orientation; back is +y where up is +z), and
   // the shorter the tube.
-  // Only balls in the lowest `share` of their height in that sense are looked at.
-  Ranking ranked(std::span<const std::uint32_t> balls, Vec3d down, double share);
+  // Only voids in the lowest `share` of their height in that sense are looked at.
+  Ranking ranked(std::span<const std::uint32_t> voids, Vec3d down, double share);
 
-  // Tubes that lead from balls to a place on the surface near `place`, the shortest first. Throws UsageError
+  // Tubes that lead from voids to a place on the surface near `place`, the shortest first. Throws UsageError
   // if the surface is farther than the hole's diameter from there.
-  std::vector<EscapeHole> leading_to(Vec3d place, std::span<const std::uint32_t> balls) const;
+  std::vector<EscapeHole> leading_to(Vec3d place, std::span<const std::uint32_t> voids) const;
 
-  // Does the tube keep the wall on its way to the surface, meets it not too obliquely, and open to the
-  // outside of every shell?
+  // Does the tube keep the wall on its way to the surface and the gap from voids, meet the surface not too
+  // obliquely, and open to the outside of every shell? Remembered.
   bool is_sound(const EscapeHole& hole);
 
  private:
@@ -86,23 +86,25 @@ class HolePlaces {
     double length;                   // of the tube
     bool is_looked_at = false;
   };
-  using PlacesByBall = std::vector<std::optional<std::vector<Place>>>;
+  using PlacesByVoid = std::vector<std::optional<std::vector<Place>>>;
 
-  PlacesByBall& places_of(Vec3d down);
-  void find_places(std::span<const std::uint32_t> balls, Vec3d down);
+  PlacesByVoid& places_of(Vec3d down);
+  void find_places(std::span<const std::uint32_t> voids, Vec3d down);
   std::optional<Place> place_of(std::uint32_t from, Vec3d direction, Vec3d down, std::size_t point) const;
   void look_at(Place& place, Vec3d down) const;
-  bool is_sound_alone(const EscapeHole& hole) const;
+  bool look_whether_sound(const EscapeHole& hole) const;
+  std::optional<Tube> tube_from(const VoidShape& shape, Vec3d inside, Vec3d direction) const;
   bool reach_surface(EscapeHole& hole) const;
-  std::optional<Vec3d> start_inside(const Sphere& ball, Vec3d direction, Vec3d down, std::size_t point) const;
+  std::optional<Vec3d> start_inside(const VoidShape& shape, Vec3d direction, Vec3d down,
+                                    std::size_t point) const;
   double showing(Vec3d place) const;
 
-  std::span<const Sphere> spheres_;
+  std::span<const VoidShape> voids_;
   PackingLimits limits_;
   const DrainageRequest& request_;
   const TubeClearance& clearance_;
   kernels::WindingView outward_;
-  std::array<PlacesByBall, 2> places_;  // for print orientation and upside down
+  std::array<PlacesByVoid, 2> places_;  // for print orientation and upside down
   std::map<std::array<double, 7>, bool> sound_;
 };
 

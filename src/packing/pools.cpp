@@ -12,8 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "packing/tube_through.h"
-
 namespace aerate {
 namespace {
 
@@ -44,131 +42,53 @@ double tube_volume_below(const Tube& tube, Vec3d up, double height) {
   return area * whole / kSlices;
 }
 
-// Of a ball, up to a height above its lowest point.
-double cap_volume(double radius, double depth) {
-  depth = std::clamp(depth, 0.0, 2 * radius);
-  return std::numbers::pi * depth * depth * (3 * radius - depth) / 3;
-}
-
-// Of a void with a roof, up to a height above its centre: of the ball up to the shoulder, then of the cone.
-double upright_volume_below(const Roof& roof, double radius, double height) {
-  const double shoulder = roof.shoulder(radius);
-  const double of_ball = cap_volume(radius, radius + std::min(height, shoulder));
-  const double rise = std::min(height, roof.top(radius)) - shoulder;
-  if (rise <= 0) return of_ball;
-  const double wide = radius * roof.cosine;
-  const double narrow = wide - rise * roof.sine / roof.cosine;
-  return of_ball + std::numbers::pi / 3 * rise * (wide * wide + wide * narrow + narrow * narrow);
-}
-
-// Heights above which liquid runs into a channel at its ends.
-struct ChannelFloors {
-  double start, end;
-};
-
-std::vector<ChannelFloors> floors_of_channels(std::span<const Sphere> spheres, const DrainagePlan& plan,
-                                              Vec3d up) {
-  std::vector<ChannelFloors> floors;
-  floors.reserve(plan.channels.size());
-  for (const Channel& channel : plan.channels)
-    floors.push_back({opening_floor(channel.tube, TubeEnd::start, spheres[channel.from], up),
-                      opening_floor(channel.tube, TubeEnd::end, spheres[channel.to], up)});
-  return floors;
-}
-
-SpillHeights spill_heights_over(std::span<const ChannelFloors> floors, std::span<const Sphere> spheres,
-                                const DrainagePlan& plan, Vec3d up) {
-  std::vector<std::vector<std::pair<std::uint32_t, double>>> ways(spheres.size());
-  for (std::size_t i = 0; i < plan.channels.size(); ++i) {
-    const Channel& channel = plan.channels[i];
-    const double sill = std::max(floors[i].start, floors[i].end);
-    ways[channel.from].push_back({channel.to, sill});
-    ways[channel.to].push_back({channel.from, sill});
-  }
-  SpillHeights spills;
-  spills.height.assign(spheres.size(), kInfinity);
-  spills.towards.assign(spheres.size(), kOutside);
-  using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, ball, towards
-  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
-  for (const EscapeHole& hole : plan.holes)
-    open.push({sill_of_hole(hole, spheres[hole.from], up), hole.from, kOutside});
-  std::vector<bool> done(spheres.size(), false);
-  while (!open.empty()) {
-    const auto [height, ball, towards] = open.top();
-    open.pop();
-    if (done[ball]) continue;
-    done[ball] = true;
-    spills.height[ball] = height;
-    spills.towards[ball] = towards;
-    spills.order.push_back(ball);
-    for (const auto& [next, sill] : ways[ball]) {
-      if (!done[next]) open.push({std::max(height, sill), next, ball});
-    }
-  }
-  return spills;
-}
-
-// What stays in one orientation, by ball and by channel, mm3.
+// What stays in one orientation, by void and by channel, mm3.
 struct Pools {
-  std::vector<double> of_ball, of_channel;
+  std::vector<double> of_void, of_channel;
 
   double sum() const {
     double total = 0;
-    for (const double volume : of_ball) total += volume;
+    for (const double volume : of_void) total += volume;
     for (const double volume : of_channel) total += volume;
     return total;
   }
 };
 
-Pools find_pools(std::span<const ChannelFloors> floors, std::span<const Sphere> spheres,
-                 const DrainagePlan& plan, const SpillHeights& spills, Vec3d up) {
+Pools find_pools(std::span<const VoidShape> voids, const DrainagePlan& plan, const SpillHeights& spills,
+                 Vec3d up) {
   Pools pools;
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    pools.of_ball.push_back(volume_below(plan.roof, spheres[i], up, spills.height[i]));
+  for (std::size_t i = 0; i < voids.size(); ++i)
+    pools.of_void.push_back(voids[i].volume_below(up, spills.height[i]));
   for (std::size_t i = 0; i < plan.channels.size(); ++i) {
     const Channel& channel = plan.channels[i];
-    const double through_start = std::max(floors[i].start, spills.height[channel.from]);
-    const double through_end = std::max(floors[i].end, spills.height[channel.to]);
+    const double through_start = std::max(spills.floors[i][0], spills.height[channel.from]);
+    const double through_end = std::max(spills.floors[i][1], spills.height[channel.to]);
     pools.of_channel.push_back(tube_volume_below(channel.tube, up, std::min(through_start, through_end)));
   }
   return pools;
 }
 
-// One orientation.
-struct Orientation {
-  SpillHeights spills;
-  Pools pools;
-};
-
-Orientation look_at_orientation(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up) {
-  const std::vector<ChannelFloors> floors = floors_of_channels(spheres, plan, up);
-  Orientation found;
-  found.spills = spill_heights_over(floors, spheres, plan, up);
-  found.pools = find_pools(floors, spheres, plan, found.spills, up);
-  return found;
-}
-
 // What stays of the pools `left` when it runs out along `spills` and may fill `room` on its way.
 double retained(const Pools& left, const Pools& room, const DrainagePlan& plan, const SpillHeights& spills) {
-  std::vector<double> inflow = left.of_ball;
-  std::vector<double> capacity = room.of_ball;
+  std::vector<double> inflow = left.of_void;
+  std::vector<double> capacity = room.of_void;
   double stays = 0;
   for (std::size_t i = 0; i < plan.channels.size(); ++i) {
     inflow[plan.channels[i].from] += left.of_channel[i];
     inflow[plan.channels[i].to] += left.of_channel[i];
     stays += std::min(left.of_channel[i], room.of_channel[i]);
   }
-  // Balls of one spill height along a way out are one basin.
-  for (auto ball = spills.order.rbegin(); ball != spills.order.rend(); ++ball) {
-    const std::uint32_t next = spills.towards[*ball];
-    if (next != kOutside && spills.height[next] == spills.height[*ball]) {
-      inflow[next] += inflow[*ball];
-      capacity[next] += capacity[*ball];
+  // Voids of one spill height along a way out are one basin.
+  for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
+    const std::uint32_t next = spills.towards[*at];
+    if (next != kOutside && spills.height[next] == spills.height[*at]) {
+      inflow[next] += inflow[*at];
+      capacity[next] += capacity[*at];
       continue;
     }
-    const double stays_here = std::min(inflow[*ball], capacity[*ball]);
+    const double stays_here = std::min(inflow[*at], capacity[*at]);
     stays += stays_here;
-    if (next != kOutside) inflow[next] += inflow[*ball] - stays_here;
+    if (next != kOutside) inflow[next] += inflow[*at] - stays_here;
   }
   for (std::size_t i = 0; i < inflow.size(); ++i) {
     if (spills.height[i] == kInfinity) stays += inflow[i];
@@ -178,34 +98,59 @@ double retained(const Pools& left, const Pools& room, const DrainagePlan& plan, 
 
 }  // namespace
 
-double sill_of_hole(const EscapeHole& hole, const Sphere& ball, Vec3d up) {
+double sill_of(const Tube& tube, const VoidShape& from, const VoidShape& to, Vec3d up) {
+  return std::max(from.opening_floor(tube, TubeEnd::start, up), to.opening_floor(tube, TubeEnd::end, up));
+}
+
+double sill_of_hole(const EscapeHole& hole, const VoidShape& from, Vec3d up) {
   const Vec3d along = hole.tube.end - hole.tube.start;
   const double rise = dot(along, up) / length(along);
   const double outside =
       dot(hole.tube.end, up) - hole.tube.radius * std::sqrt(std::max(0.0, 1 - rise * rise));
-  return std::max(opening_floor(hole.tube, TubeEnd::start, ball, up), outside);
+  return std::max(from.opening_floor(hole.tube, TubeEnd::start, up), outside);
 }
 
-double volume_below(const Roof& roof, const Sphere& planned, Vec3d up, double height) {
-  const double above_centre = height - dot(planned.centre, up);
-  if (!roof.shapes(planned.radius)) return cap_volume(planned.radius, planned.radius + above_centre);
-  if (dot(up, roof.up) > 0) return upright_volume_below(roof, planned.radius, above_centre);
-  return void_volume(roof, planned.radius) - upright_volume_below(roof, planned.radius, -above_centre);
+SpillHeights spill_heights(std::span<const VoidShape> voids, const DrainagePlan& plan, Vec3d up) {
+  SpillHeights spills;
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> ways(voids.size());
+  for (const Channel& channel : plan.channels) {
+    const double start = voids[channel.from].opening_floor(channel.tube, TubeEnd::start, up);
+    const double end = voids[channel.to].opening_floor(channel.tube, TubeEnd::end, up);
+    spills.floors.push_back({start, end});
+    ways[channel.from].push_back({channel.to, std::max(start, end)});
+    ways[channel.to].push_back({channel.from, std::max(start, end)});
+  }
+  spills.height.assign(voids.size(), kInfinity);
+  spills.towards.assign(voids.size(), kOutside);
+  using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, void, towards
+  std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
+  for (const EscapeHole& hole : plan.holes)
+    open.push({sill_of_hole(hole, voids[hole.from], up), hole.from, kOutside});
+  std::vector<bool> done(voids.size(), false);
+  while (!open.empty()) {
+    const auto [height, at, towards] = open.top();
+    open.pop();
+    if (done[at]) continue;
+    done[at] = true;
+    spills.height[at] = height;
+    spills.towards[at] = towards;
+    spills.order.push_back(at);
+    for (const auto& [next, sill] : ways[at]) {
+      if (!done[next]) open.push({std::max(height, sill), next, at});
+    }
+  }
+  return spills;
 }
 
-SpillHeights spill_heights(std::span<const Sphere> spheres, const DrainagePlan& plan, Vec3d up) {
-  return spill_heights_over(floors_of_channels(spheres, plan, up), spheres, plan, up);
-}
-
-std::vector<Pool> upright_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
-  const SpillHeights spills = spill_heights(spheres, plan, plan.roof.up);
-  std::vector<std::uint32_t> root_of(spheres.size(), kOutside);
+std::vector<Pool> upright_pools(std::span<const VoidShape> voids, const DrainagePlan& plan) {
+  const SpillHeights spills = spill_heights(voids, plan, plan.roof.up);
+  std::vector<std::uint32_t> root_of(voids.size(), kOutside);
   std::map<std::uint32_t, Pool> pool_of;
   for (const std::uint32_t i : spills.order) {
     const std::uint32_t next = spills.towards[i];
     root_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? root_of[next] : i;
     Pool& pool = pool_of[root_of[i]];
-    pool.volume += volume_below(plan.roof, spheres[i], plan.roof.up, spills.height[i]);
+    pool.volume += voids[i].volume_below(plan.roof.up, spills.height[i]);
     pool.voids.push_back(i);
   }
   std::vector<Pool> pools;
@@ -228,14 +173,14 @@ std::vector<std::uint32_t> branch_of(std::uint32_t root, const SpillHeights& spi
   return branch;
 }
 
-std::uint32_t fullest_branch(std::span<const Sphere> spheres, const DrainagePlan& plan,
+std::uint32_t fullest_branch(std::span<const VoidShape> voids, const DrainagePlan& plan,
                              const SpillHeights& spills, std::span<const std::uint32_t> kept, double least) {
-  std::vector<double> whole(spheres.size(), 0), full(spheres.size(), 0);
+  std::vector<double> whole(voids.size(), 0), full(voids.size(), 0);
   for (const std::uint32_t i : spills.order) {
-    whole[i] = void_volume(plan.roof, spheres[i].radius);
-    full[i] = volume_below(plan.roof, spheres[i], plan.roof.up, spills.height[i]);
+    whole[i] = voids[i].volume();
+    full[i] = voids[i].volume_below(plan.roof.up, spills.height[i]);
   }
-  std::vector<bool> has_hole(spheres.size(), false), is_kept(spheres.size(), false);
+  std::vector<bool> has_hole(voids.size(), false), is_kept(voids.size(), false);
   for (const EscapeHole& hole : plan.holes) has_hole[hole.from] = true;
   for (const std::uint32_t i : kept) is_kept[i] = true;
   std::array<std::uint32_t, 2> worst{kOutside, kOutside};  // without a hole, and with one
@@ -256,15 +201,23 @@ std::uint32_t fullest_branch(std::span<const Sphere> spheres, const DrainagePlan
   return worst[0] != kOutside ? worst[0] : worst[1];
 }
 
-TrappedPools trapped_pools(std::span<const Sphere> spheres, const DrainagePlan& plan) {
-  Orientation upright, turned;
-  tbb::parallel_invoke([&] { upright = look_at_orientation(spheres, plan, plan.roof.up); },
-                       [&] { turned = look_at_orientation(spheres, plan, -plan.roof.up); });
+TrappedPools trapped_pools(std::span<const VoidShape> voids, const DrainagePlan& plan) {
+  SpillHeights spills;
+  Pools upright, turned;
+  tbb::parallel_invoke(
+      [&] {
+        const SpillHeights upright_spills = spill_heights(voids, plan, plan.roof.up);
+        upright = find_pools(voids, plan, upright_spills, plan.roof.up);
+      },
+      [&] {
+        spills = spill_heights(voids, plan, -plan.roof.up);
+        turned = find_pools(voids, plan, spills, -plan.roof.up);
+      });
   TrappedPools pools;
-  pools.upright = upright.pools.sum();
-  pools.upside_down = turned.pools.sum();
-  pools.after_both = std::min(pools.upright, retained(upright.pools, turned.pools, plan, turned.spills));
-  for (const Sphere& ball : spheres) pools.total += void_volume(plan.roof, ball.radius);
+  pools.upright = upright.sum();
+  pools.upside_down = turned.sum();
+  pools.after_both = std::min(pools.upright, retained(upright, turned, plan, spills));
+  for (const VoidShape& shape : voids) pools.total += shape.volume();
   for (const Channel& channel : plan.channels) {
     pools.total += std::numbers::pi * channel.tube.radius * channel.tube.radius *
                    length(channel.tube.end - channel.tube.start);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "kernels/nearest_point.h"
@@ -61,58 +62,32 @@ struct RayMetric {
   }
 };
 
-// How far a void reaches beyond its ball at most.
-double reach_of_roofs(std::span<const Sphere> spheres, const Roof& roof) {
-  double reach = 0;
-  for (const Sphere& sphere : spheres) reach = std::max(reach, roof.spine(sphere.radius));
-  return reach;
-}
-
 }  // namespace
 
-double tube_spacing(double radius, double other_radius) {
-  return radius + other_radius + kOpeningSpacingShare * std::max(radius, other_radius);
-}
-
-TubeClearance::TubeClearance(const SurfaceIndex& surface, std::span<const Sphere> spheres,
-                             const PackingLimits& limits, double longest, double widest_radius)
+TubeClearance::TubeClearance(const SurfaceIndex& surface, const Packing& packing, double longest,
+                             double widest_radius)
     : bvh_(surface.bvh()),
-      spheres_(spheres),
-      limits_(limits),
-      longest_(longest),
-      roofs_(reach_of_roofs(spheres, limits.roof)),
-      cell_size_(longest + 2 * widest_radius + std::max(limits.gap, kOpeningSpacingShare * widest_radius)) {
-  const double reach = longest + widest_radius + limits.gap + roofs_;
-  const std::vector<SpherePair> pairs = find_pairs_within(spheres, reach);
-  offsets_.assign(spheres.size() + 1, 0);
-  for (const SpherePair& pair : pairs) {
-    ++offsets_[pair.first + 1];
-    ++offsets_[pair.second + 1];
+      voids_(shapes_of(packing.spheres, packing.limits.roof)),
+      limits_(packing.limits),
+      longest_(longest) {
+  for (const VoidShape& shape : voids_) roofs_ = std::max(roofs_, shape.reach_beyond_ball());
+  const double reach = longest + widest_radius + limits_.gap + roofs_;
+  neighbours_.resize(voids_.size());
+  for (const SpherePair& pair : find_pairs_within(packing.spheres, reach)) {
+    neighbours_[pair.first].push_back({pair.gap, pair.second});
+    neighbours_[pair.second].push_back({pair.gap, pair.first});
   }
-  for (std::size_t i = 0; i < spheres.size(); ++i) offsets_[i + 1] += offsets_[i];
-  std::vector<std::pair<double, std::uint32_t>> rows(2 * pairs.size());
-  std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
-  for (const SpherePair& pair : pairs) {
-    rows[next[pair.first]++] = {pair.gap, pair.second};
-    rows[next[pair.second]++] = {pair.gap, pair.first};
-  }
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    std::sort(rows.begin() + static_cast<std::ptrdiff_t>(offsets_[i]),
-              rows.begin() + static_cast<std::ptrdiff_t>(offsets_[i + 1]));
-  }
-  neighbours_.reserve(rows.size());
-  gaps_.reserve(rows.size());
-  for (const auto& [gap, ball] : rows) {
-    gaps_.push_back(gap);
-    neighbours_.push_back(ball);
-  }
+  for (std::vector<Neighbour>& neighbours : neighbours_)
+    std::sort(neighbours.begin(), neighbours.end(), [](const Neighbour& a, const Neighbour& b) {
+      return std::tie(a.gap, a.index) < std::tie(b.gap, b.index);
+    });
 }
 
-std::span<const std::uint32_t> TubeClearance::neighbours(std::uint32_t ball) const {
-  const auto first = gaps_.begin() + static_cast<std::ptrdiff_t>(offsets_[ball]);
-  const auto last = gaps_.begin() + static_cast<std::ptrdiff_t>(offsets_[ball + 1]);
-  const auto count = static_cast<std::size_t>(std::lower_bound(first, last, longest_) - first);
-  return std::span(neighbours_).subspan(offsets_[ball], count);
+std::span<const TubeClearance::Neighbour> TubeClearance::neighbours(std::uint32_t at) const {
+  const std::vector<Neighbour>& all = neighbours_[at];
+  const auto end =
+      std::find_if(all.begin(), all.end(), [&](const Neighbour& n) { return n.gap >= longest_; });
+  return {all.begin(), end};
 }
 
 double TubeClearance::to_surface(Vec3d point, double limit) const {
@@ -176,63 +151,13 @@ bool TubeClearance::keeps_away(const Tube& tube, double most, double slope) cons
 }
 
 bool TubeClearance::keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const {
-  const double reach = length(tube.end - tube.start) + tube.radius + limits_.gap + roofs_;
-  for (std::size_t i = offsets_[from]; i < offsets_[from + 1] && gaps_[i] <= reach; ++i) {
-    if (neighbours_[i] == to) continue;
-    const Sphere& other = spheres_[neighbours_[i]];
-    const Segment axis{tube.start, tube.end};
-    const double needed = tube.radius + limits_.gap;
-    const double from_ball = distance_to_point(axis, other.centre) - other.radius;
-    if (from_ball < needed) return false;
-    const double spine = limits_.roof.spine(other.radius);
-    if (spine > 0 && from_ball < needed + spine && distance_to_void(axis, limits_.roof, other) < needed)
-      return false;
+  const double needed = tube.radius + limits_.gap;
+  const double reach = length(tube.end - tube.start) + needed + roofs_;
+  for (const auto& [gap, other] : neighbours_[from]) {
+    if (gap > reach) break;
+    if (other != to && !voids_[other].is_farther_than(needed, {tube.start, tube.end})) return false;
   }
   return true;
-}
-
-std::uint64_t TubeClearance::cell_of(Vec3d point, int dx, int dy, int dz) const {
-  const auto cell = [this](double x, int offset) {
-    constexpr std::int64_t kMiddle = 1 << 20;
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / cell_size_)) + offset +
-                                      kMiddle) &
-           0x1fffff;
-  };
-  return cell(point.x, dx) << 42 | cell(point.y, dy) << 21 | cell(point.z, dz);
-}
-
-bool TubeClearance::keeps_gap_to_tubes(const Tube& tube, std::uint32_t from, std::uint32_t to) const {
-  const Vec3d middle = (tube.start + tube.end) * 0.5;
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const auto found = cells_.find(cell_of(middle, dx, dy, dz));
-        if (found == cells_.end()) continue;
-        for (const std::uint32_t other : found->second) {
-          const Placed& placed = tubes_[other];
-          const bool meet = placed.from == from || placed.from == to || placed.to == from || placed.to == to;
-          const double openings = tube_spacing(tube.radius, placed.tube.radius);
-          const double spacing =
-              meet ? openings : std::max(openings, tube.radius + placed.tube.radius + limits_.gap);
-          if (distance_between({tube.start, tube.end}, {placed.tube.start, placed.tube.end}) < spacing)
-            return false;
-        }
-      }
-    }
-  }
-  return true;
-}
-
-void TubeClearance::place(const Tube& tube, std::uint32_t from, std::uint32_t to) {
-  cells_[cell_of((tube.start + tube.end) * 0.5, 0, 0, 0)].push_back(
-      static_cast<std::uint32_t>(tubes_.size()));
-  tubes_.push_back({tube, from, to});
-}
-
-void TubeClearance::take_back_last() {
-  const Tube& tube = tubes_.back().tube;
-  cells_[cell_of((tube.start + tube.end) * 0.5, 0, 0, 0)].pop_back();
-  tubes_.pop_back();
 }
 
 }  // namespace aerate

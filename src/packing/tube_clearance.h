@@ -3,29 +3,23 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "core/drainage.h"
 #include "core/packing.h"
-#include "core/segment_distance.h"
 #include "core/surface_index.h"
+#include "core/void_shape.h"
 
 namespace aerate {
 
-// Distance that the axes of two tubes have to keep where both meet one ball, so that an edge of one's ring
-// does not cut the other.
-double tube_spacing(double radius, double other_radius);
-
 // Where tubes may run: answers whether a tube keeps the wall from the model's surface, and the gap from voids
-// that it does not join and from tubes that were placed before.
+// that it does not join. For other tubes see PlacedTubes.
 class TubeClearance {
  public:
-  // `longest` is the length that no channel exceeds, mm. Surface and spheres must outlive this.
-  TubeClearance(const SurfaceIndex& surface, std::span<const Sphere> spheres, const PackingLimits& limits,
-                double longest, double widest_radius);
-  TubeClearance(SurfaceIndex&& surface, std::span<const Sphere> spheres, const PackingLimits& limits,
-                double longest, double widest_radius) = delete;
+  // No tube is longer than `longest`, mm. The surface must outlive this.
+  TubeClearance(const SurfaceIndex& surface, const Packing& packing, double longest, double widest_radius);
+  TubeClearance(SurfaceIndex&& surface, const Packing& packing, double longest,
+                double widest_radius) = delete;
 
   // Distance from a point to the model's surface; `limit` if it is farther.
   double to_surface(Vec3d point, double limit) const;
@@ -48,40 +42,29 @@ class TubeClearance {
   // but for `kWallSlack` as before, and for the last of the way that is shorter than that.
   bool keeps_wall_on_way_out(const Tube& tube, double slope) const;
 
-  // Do voids other than those two keep the gap from the tube, which starts at ball `from`?
+  // Do voids other than those two keep the gap from the tube, which starts at void `from`?
   bool keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
 
-  // Tubes that have been placed keep the gap from each other. On a ball that two of them meet, their openings
-  // are apart by a share of their radius at least.
-  bool keeps_gap_to_tubes(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
-  void place(const Tube& tube, std::uint32_t from, std::uint32_t to);
-  void take_back_last();
-
-  // Neighbours of a ball, the nearest first; their surfaces are nearer than `longest`.
-  std::span<const std::uint32_t> neighbours(std::uint32_t ball) const;
+  // Neighbours of a void, the nearest first; their balls are nearer than `longest`.
+  struct Neighbour {
+    double gap;
+    std::uint32_t index;
+  };
+  std::span<const Neighbour> neighbours(std::uint32_t at) const;
 
   static constexpr double kWallSlack = 0.02;  // mm
 
  private:
-  struct Placed {
-    Tube tube;
-    std::uint32_t from, to;
-  };
   // Is every point of the axis at least min(most, slope * way to the end) from the surface?
   bool keeps_away(const Tube& tube, double most, double slope) const;
-  std::uint64_t cell_of(Vec3d point, int dx, int dy, int dz) const;
 
   kernels::TriangleBvhView bvh_;
-  std::span<const Sphere> spheres_;
+  std::vector<VoidShape> voids_;
   PackingLimits limits_;
+  double roofs_ = 0;  // how far a void reaches beyond its ball at most
   double longest_;
-  double roofs_;  // how far a void reaches beyond its ball at most
-  std::vector<std::size_t> offsets_;
-  std::vector<std::uint32_t> neighbours_;
-  std::vector<double> gaps_;  // to each of these neighbours
-  double cell_size_ = 1;
-  std::vector<Placed> tubes_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;  // by the middle of a tube
+  std::vector<std::vector<Neighbour>>
+      neighbours_;  // by void; those too that only tubes to others may be near
 };
 
 }  // namespace aerate

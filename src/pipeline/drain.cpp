@@ -29,9 +29,6 @@ constexpr int kMostTries = 12;
 // Places at which the surface turns out not to be cut, before that is an error.
 constexpr std::size_t kMostRefused = 100;
 
-// Above this share of the voids' volume pools are worth a notice.
-constexpr double kPoolsAimedAt = 0.01;
-
 std::string reasons(const UndrainedVoids& dropped, const DrainageRequest& request) {
   std::string text;
   const auto add = [&](std::size_t count, const char* why) {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "files/sphere_table.h"
 #include "packing/verify.h"
 #include "pipeline/announced_file.h"

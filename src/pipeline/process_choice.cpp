@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "pipeline/process_file.h"
 
 namespace aerate {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "check/ceilings.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "core/upright.h"
 #include "printing/carve.h"
 #include "tests/support/packing_of.h"

@@ -9,7 +9,7 @@
 #include "check/check_written.h"
 #include "check/crossings.h"
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "mesh/outward_shells.h"
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
@@ -200,11 +200,12 @@ class CheckDrainedRoofs : public CheckDrained {
     plan_ = {};
     plan_.roof = packing_.limits.roof;
     plan_.network_count = 1;
-    const Vec3d a = packing_.spheres[0].centre, b = packing_.spheres[1].centre;
+    const std::vector<VoidShape> voids = shapes_of(packing_.spheres, packing_.limits.roof);
     plan_.channels.push_back(
-        {0, 1, tube_between(packing_.spheres[0], packing_.spheres[1], a, b, channel_radius).value()});
+        {0, 1,
+         tube_between(voids[0], voids[1], voids[0].centre(), voids[1].centre(), channel_radius).value()});
     for (std::uint32_t i = 0; i < 2; ++i) {
-      Tube tube = tube_out_of(packing_.spheres[i], packing_.spheres[i].centre, {0, 0, -1}, 1, 2.5).value();
+      Tube tube = tube_out_of(voids[i], voids[i].centre(), {0, 0, -1}, 1, 2.5).value();
       tube.end.z = 0;
       plan_.holes.push_back({i, tube, 0});
     }

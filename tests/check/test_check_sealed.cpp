@@ -9,7 +9,7 @@
 
 #include "check/check_written.h"
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "printing/carve.h"
 #include "tests/support/caught.h"
 #include "tests/support/read_back.h"

@@ -1,6 +1,6 @@
 #include <filesystem>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "files/load.h"
 #include "packing/adaptive.h"
 #include "tests/cuda/cuda_test.h"

@@ -11,7 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "kernels/adaptive_packing.h"
 #include "kernels/exec_cpu.h"
 #include "packing/adaptive.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <tbb/parallel_for.h>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "files/load.h"
 #include "kernels/roof_distance.h"
 #include "packing/adaptive.h"
@@ -44,7 +44,7 @@ void expect_limits_held(const Mesh& mesh, const Packing& packing) {
   tbb::parallel_for(std::size_t{0}, spheres.size(), [&](std::size_t i) {
     for (const Triangle& t : mesh.triangles) {
       walls[i] = std::min(walls[i], kernels::distance_to_facet(limits.roof, spheres[i].centre,
-                                                               spheres[i].radius, test::facet_of(mesh, t)));
+                                                               spheres[i].radius, facet_of(mesh, t)));
     }
   });
   for (std::size_t i = 0; i < spheres.size(); ++i) {

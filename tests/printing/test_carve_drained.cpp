@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "check/same_triangles.h"
-#include "core/roof.h"
-#include "core/top_opening.h"
+#include "core/overhang.h"
+#include "core/void_shape.h"
 #include "printing/ball_template.h"
 #include "printing/carve_drained.h"
 #include "printing/cut_surface.h"
@@ -144,8 +144,8 @@ TEST_F(CarveDrained, VoidsWithRoofs) {
   roof_ = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
   plan_.holes[1].tube = out_of({28, 15, 12}, {1, 0, 0}, 2);
   for (const Channel& c : plan_.channels) {
-    ASSERT_TRUE(opens_below_roof(c.tube, TubeEnd::start, spheres_[0], roof_));
-    ASSERT_TRUE(opens_below_roof(c.tube, TubeEnd::end, spheres_[1], roof_));
+    ASSERT_TRUE(VoidShape(spheres_[0], roof_).opens_below_roof(c.tube, TubeEnd::start));
+    ASSERT_TRUE(VoidShape(spheres_[1], roof_).opens_below_roof(c.tube, TubeEnd::end));
   }
   for (const double tolerance : {0.2, 0.05, 0.02}) {
     const Solid solid = carve(tolerance);
@@ -176,9 +176,9 @@ TEST_F(CarveDrained, AChannelOutOfARoof) {
   roof_ = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
   model_ = test::make_box({0, 0, 0}, {30, 30, 50});
   spheres_ = {ball({15, 15, 12}, 6), ball({16, 14, 31}, 5)};
-  const Vec3d start = spheres_[0].centre + kUp * top_opening_height(1.4, 6, roof_);
+  const Vec3d start = spheres_[0].centre + kUp * VoidShape(spheres_[0], roof_).top_opening_height(1.4);
   plan_.channels = {{0, 1, {start, {15, 15, 26.5}, 1.4}}};
-  ASSERT_TRUE(comes_out_of_top(plan_.channels[0].tube, spheres_[0], roof_));
+  ASSERT_TRUE(VoidShape(spheres_[0], roof_).comes_out_of_top(plan_.channels[0].tube));
   plan_.holes = {{0, {{15, 15, 6.5}, {15, 15, 0}, 2}, 0}, {1, {{20, 14, 30}, {30, 14, 30}, 1.5}, 0}};
   for (const double tolerance : {0.2, 0.05}) {
     const Solid solid = carve(tolerance);
@@ -195,7 +195,7 @@ TEST_F(CarveDrained, ASideThatATubeMeetsAtAGrazingAngle) {
   // As far off the centre as may be.
   const double off = 0.999 * kWidestTubeShare * 7 - 2;
   plan_.holes[0].tube = out_of({12, 15 - off, 10}, {0, 0, -1}, 2);
-  ASSERT_TRUE(meets_all_round(plan_.holes[0].tube, spheres_[0]));
+  ASSERT_TRUE(VoidShape(spheres_[0], {}).crossing(plan_.holes[0].tube, TubeEnd::start));
   for (const double tolerance : {0.2, 0.05, 0.01})
     EXPECT_TRUE(test::is_closed_manifold(carve(tolerance).mesh));
 }
@@ -243,7 +243,7 @@ TEST(OpenBall, IsTheHullLessWhatIsInsideTheRims) {
     for (const Vec3d direction : {Vec3d{0, 0, 1}, Vec3d{0.6, 0, -0.8}, Vec3d{-0.48, 0.6, -0.64}}) {
       const Vec3d inside = sphere.centre + Vec3d{0.4, 0.3, 0.2};
       const Tube tube{inside, inside + direction * 9, 1.2};
-      openings.push_back({tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, sphere, {0, 0, 1}, 32)});
+      openings.push_back({tube, TubeEnd::start, VoidShape(sphere, {}).rim(tube, TubeEnd::start, 32)});
     }
     const auto opened = open_ball(sphere, whole, openings);
     ASSERT_TRUE(opened) << tolerance;
@@ -276,7 +276,7 @@ TEST(OpenBall, ARimNearTheEquatorLeavesWhatIsBeyondIt) {
   const StarTriangulation whole = template_of(sphere, 0.05);
   const Tube tube{{0, 0, 0}, {0, 0, 1}, 8 * std::cos(15 * std::numbers::pi / 180)};
   const std::vector<Opening> openings{
-      {tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, sphere, {0, 0, 1}, 200)}};
+      {tube, TubeEnd::start, VoidShape(sphere, {}).rim(tube, TubeEnd::start, 200)}};
   const auto opened = open_ball(sphere, whole, openings);
   ASSERT_TRUE(opened);
   EXPECT_GE(opened->nearest, 8 - 0.06);
@@ -288,7 +288,7 @@ TEST(OpenBall, RefusesOpeningsThatMeet) {
   std::vector<Opening> openings;
   for (const double x : {0.0, 1.0}) {
     const Tube tube{{x, 0, 0}, {x, 0, 9}, 1.2};
-    openings.push_back({tube, TubeEnd::start, ring_on_ball(tube, TubeEnd::start, sphere, {0, 0, 1}, 32)});
+    openings.push_back({tube, TubeEnd::start, VoidShape(sphere, {}).rim(tube, TubeEnd::start, 32)});
   }
   EXPECT_FALSE(open_ball(sphere, whole, openings));
   openings.pop_back();

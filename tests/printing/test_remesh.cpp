@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "files/load.h"
 #include "kernels/point_triangle.h"
 #include "kernels/winding.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <tbb/global_control.h>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "kernels/roof_distance.h"
 #include "printing/carve.h"
 #include "printing/cut_ball.h"
@@ -47,15 +47,15 @@ void expect_good_void(const Mesh& surface, const Roof& roof, const Sphere& spher
     ASSERT_LE(height_of(roof, sphere, p), top);
   }
   for (const Triangle& t : surface.triangles) {
-    double depth = kernels::lateral_depth(roof, sphere.centre, sphere.radius, test::facet_of(surface, t));
+    double depth = kernels::lateral_depth(roof, sphere.centre, sphere.radius, facet_of(surface, t));
     if (roof.shapes(sphere.radius)) {
       double lowest = top;
       for (const std::uint32_t v : t)
         lowest = std::min(lowest, height_of(roof, sphere, surface.positions[v]));
       depth = std::min(depth, top - lowest);
     } else {
-      depth = sphere.radius -
-              std::sqrt(kernels::distance_squared_to_facet(sphere.centre, test::facet_of(surface, t)));
+      depth =
+          sphere.radius - std::sqrt(kernels::distance_squared_to_facet(sphere.centre, facet_of(surface, t)));
     }
     ASSERT_LE(depth, tolerance * (1 + 1e-9));
   }

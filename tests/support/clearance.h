@@ -12,10 +12,6 @@
 // What spheres must obey, found out without any index: the oracle of the packing tests.
 namespace aerate::test {
 
-inline kernels::Facet facet_of(const Mesh& mesh, const Triangle& t) {
-  return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-}
-
 inline double distance_to_surface(const Mesh& mesh, Vec3d p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Triangle& t : mesh.triangles) {

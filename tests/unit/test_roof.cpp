@@ -5,7 +5,7 @@
 #include <random>
 
 #include "core/error.h"
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "kernels/point_triangle.h"
 #include "kernels/roof_distance.h"
 

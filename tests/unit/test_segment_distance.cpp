@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/roof.h"
+#include "core/overhang.h"
 #include "core/segment_distance.h"
 #include "core/surface_index.h"
+#include "core/void_shape.h"
 #include "kernels/point_triangle.h"
 #include "tests/support/shapes.h"
 
@@ -77,10 +78,29 @@ TEST(SegmentDistance, ToVoidsWithRoofs) {
   for (const Segment& segment :
        {Segment{{9, 2, 3}, {9, 5, 3}}, Segment{{4, 2, 12}, {9, 2, 8}}, Segment{{1, 2, 11}, {1, 2, 14}},
         Segment{{-9, 4, 9}, {9, 4, 9}}, Segment{{1, 8, -6}, {1, 9, 20}}}) {
-    EXPECT_NEAR(distance_to_void(segment, roof, planned), by_balls(segment), 1e-6);
-    EXPECT_NEAR(distance_to_void(segment, {}, planned), distance_to_point(segment, planned.centre) - 5,
+    const double distance = VoidShape(planned, roof).distance_to(segment);
+    EXPECT_NEAR(distance, by_balls(segment), 1e-6);
+    EXPECT_TRUE(VoidShape(planned, roof).is_farther_than(distance - 1e-6, segment));
+    EXPECT_FALSE(VoidShape(planned, roof).is_farther_than(distance + 1e-6, segment));
+    EXPECT_NEAR(VoidShape(planned, {}).distance_to(segment), distance_to_point(segment, planned.centre) - 5,
                 1e-12);
   }
+}
+
+TEST(VoidShape, HoldsWhatItsRadiusDoes) {
+  const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = {0, 0, 1}});
+  const Sphere planned{{1, 2, 3}, 5, SphereKind::adaptive};
+  const VoidShape with_roof(planned, roof), round(planned, {});
+  EXPECT_DOUBLE_EQ(round.least_radius_holding({1, 2, 7}), 4);
+  EXPECT_DOUBLE_EQ(with_roof.least_radius_holding({1, 2, -1}), 4);
+  EXPECT_NEAR(with_roof.least_radius_holding({1, 2, 3 + roof.top(5)}), 5, 1e-12);  // its flat top's middle
+  EXPECT_DOUBLE_EQ(with_roof.least_radius_holding({1, 2, 4}), 1);  // so small a void has no roof
+  const kernels::Facet below{{0, 2, 0}, {2, 2, 0}, {1, 3, 0}};
+  EXPECT_DOUBLE_EQ(round.depth(below), 2);
+  EXPECT_DOUBLE_EQ(with_roof.depth(below), 2);
+  const auto top = static_cast<float>(3 + roof.top(5) - 0.25);
+  EXPECT_NEAR(with_roof.depth({{0, 2, top}, {2, 2, top}, {1, 3, top}}), 0.25, 1e-6);
+  EXPECT_DOUBLE_EQ(round.volume_within(0.5), round.volume() * 0.9 * 0.9 * 0.9);
 }
 
 TEST(SurfaceIndex, TrianglesNearAreTheSameByHierarchyAndByLookingAtAll) {

@@ -1,8 +1,8 @@
-#include "core/roof.h"
+#include "core/overhang.h"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
-#include <string>
 
 #include "core/error.h"
 
@@ -11,30 +11,23 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-std::string to_text(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
-
 }  // namespace
 
 Roof make_roof(const Overhang& overhang) {
   if (!(overhang.degrees > 0) || !(overhang.degrees < 90)) {
     throw UsageError(
-        "an overhang of " + to_text(overhang.degrees) + " degrees from the vertical makes no roof",
+        fmt::format("an overhang of {:g} degrees from the vertical makes no roof", overhang.degrees),
         "give an angle between 0 (walls must be upright) and 90 (ceilings may be flat); most "
         "printers manage 45");
   }
   if (!(overhang.bridge >= 0) || !std::isfinite(overhang.bridge)) {
-    throw UsageError("a bridge of " + to_text(overhang.bridge) + " mm is no width",
+    throw UsageError(fmt::format("a bridge of {:g} mm is no width", overhang.bridge),
                      "give the width of the widest flat ceiling that the printer spans, 0 mm or more");
   }
   const double extent = length(overhang.up);
   if (!(extent > 0) || !std::isfinite(extent)) {
-    throw UsageError("the print direction (" + to_text(overhang.up.x) + ", " + to_text(overhang.up.y) + ", " +
-                         to_text(overhang.up.z) + ") points nowhere",
+    throw UsageError(fmt::format("the print direction ({:g}, {:g}, {:g}) points nowhere", overhang.up.x,
+                                 overhang.up.y, overhang.up.z),
                      "give a direction such as +z or 0,0,1");
   }
   Roof roof;
