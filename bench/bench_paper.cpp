@@ -88,7 +88,7 @@ Figures add_row(Table& table, const Container& container, const Mesh& mesh) {
   figures.seconds = least_seconds(3, [&] {
     packing = pack_hexagonal(mesh, limits, monitor, {DeviceRequest::Kind::cpu, 0});
   });
-  packing = verify_packing(mesh, packing);
+  packing = verify_packing(SurfaceIndex(mesh), packing);
   figures.corrected = packing.statistics.dropped_by_verification + packing.statistics.shrunk_by_verification;
   std::size_t kinds[4] = {};
   for (const Sphere& sphere : packing.spheres) ++kinds[static_cast<std::size_t>(sphere.kind)];

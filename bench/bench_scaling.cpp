@@ -94,7 +94,7 @@ Row measure(const Mesh& mesh, const Pack& pack) {
   row.index_bytes = static_cast<double>(packing.statistics.index_bytes);
   row.index_references = static_cast<double>(packing.statistics.index_references);
   row.index_cells = static_cast<double>(packing.statistics.index_cells);
-  const Packing verified = verify_packing(mesh, packing);
+  const Packing verified = verify_packing(SurfaceIndex(mesh), packing);
   row.corrected = static_cast<double>(verified.statistics.dropped_by_verification +
                                       verified.statistics.shrunk_by_verification);
   return row;

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace aerate {
 
@@ -31,35 +32,17 @@ class Error : public std::runtime_error {
   std::string hint_;
 };
 
-class FailureError : public Error {
+template <ExitCode kCode>
+class ErrorOf : public Error {
  public:
-  explicit FailureError(const std::string& what, std::string hint = {})
-      : Error(ExitCode::failure, what, std::move(hint)) {}
+  explicit ErrorOf(const std::string& what, std::string hint = {}) : Error(kCode, what, std::move(hint)) {}
 };
 
-class UsageError : public Error {
- public:
-  explicit UsageError(const std::string& what, std::string hint = {})
-      : Error(ExitCode::usage, what, std::move(hint)) {}
-};
-
-class InputError : public Error {
- public:
-  explicit InputError(const std::string& what, std::string hint = {})
-      : Error(ExitCode::unreadable_input, what, std::move(hint)) {}
-};
-
-class MeshError : public Error {
- public:
-  explicit MeshError(const std::string& what, std::string hint = {})
-      : Error(ExitCode::unusable_mesh, what, std::move(hint)) {}
-};
-
-class NothingToRemoveError : public Error {
- public:
-  explicit NothingToRemoveError(const std::string& what, std::string hint = {})
-      : Error(ExitCode::nothing_to_remove, what, std::move(hint)) {}
-};
+using FailureError = ErrorOf<ExitCode::failure>;
+using UsageError = ErrorOf<ExitCode::usage>;
+using InputError = ErrorOf<ExitCode::unreadable_input>;
+using MeshError = ErrorOf<ExitCode::unusable_mesh>;
+using NothingToRemoveError = ErrorOf<ExitCode::nothing_to_remove>;
 
 class InterruptedError : public Error {
  public:

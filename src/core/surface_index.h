@@ -16,8 +16,7 @@ namespace aerate {
 // mesh need not outlive it.
 class SurfaceIndex {
  public:
-  // A mesh may stand where its index is asked for: it is then indexed for that one question.
-  SurfaceIndex(const Mesh& mesh);  // NOLINT(google-explicit-constructor, hicpp-explicit-conversions)
+  explicit SurfaceIndex(const Mesh& mesh);
 
   // For use in the caller's own loops; valid while this object lives.
   const kernels::TriangleBvhView& bvh() const { return bvh_.view(); }

@@ -17,17 +17,21 @@
 namespace aerate {
 namespace {
 
-// Spheres of a file, which have to be a packing of this model under these limits.
-Packing given_packing(const Mesh& mesh, const PackingRequest& request) {
-  const PackingLimits limits = request.limits();
+Packing given_packing(const PackingRequest& request) {
   Packing packing;
-  packing.limits = limits;
+  packing.limits = request.limits();
   packing.spheres = read_sphere_table(request.spheres);
   packing.statistics.candidates = packing.spheres.size();
   packing.device.reason = "the spheres were given";
-  const auto fault = find_fault(mesh, packing);
-  if (!fault) return packing;
+  return packing;
+}
 
+// Spheres of a file have to be a packing of this model under these limits.
+void require_no_fault(const SurfaceIndex& surface, const Packing& packing, const PackingRequest& request) {
+  const auto fault = find_fault(surface, packing);
+  if (!fault) return;
+
+  const PackingLimits& limits = packing.limits;
   const std::string file = request.spheres.filename().string();
   const Sphere& sphere = packing.spheres[fault->sphere];
   const std::string which =
@@ -79,7 +83,7 @@ void require_room_for_roofs(const PackingMethod& method, const PackingLimits& li
 }
 
 Packing pack_unverified(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
-  if (!request.spheres.empty()) return given_packing(model.mesh, request);
+  if (!request.spheres.empty()) return given_packing(request);
   require_room_for_roofs(*request.method, request.limits());
   PackingStop stop = request.stop;
   stop.volume = model.inspection.filled_volume;
@@ -163,6 +167,7 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
 
   monitor.stage("verify");
   SurfaceIndex surface(model.mesh);
+  if (!request.spheres.empty()) require_no_fault(surface, packing, request);
   packing = verify_packing(surface, std::move(packing));
   monitor.check_interrupted();
   if (packing.spheres.empty()) refuse_empty(model, surface, request);

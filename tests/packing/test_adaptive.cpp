@@ -148,7 +148,7 @@ TEST(Adaptive, HoldsWallGapAndRadii) {
 
 TEST(Adaptive, VerificationFindsNothingToCorrect) {
   const Mesh ball = make_ball(24);
-  const Packing packing = verify_packing(ball, pack(ball, {0.4, 0.2, 0.2, 3.0}));
+  const Packing packing = verify_packing(SurfaceIndex(ball), pack(ball, {0.4, 0.2, 0.2, 3.0}));
   EXPECT_GT(packing.spheres.size(), 1000U);
   EXPECT_EQ(packing.statistics.dropped_by_verification, 0U);
   EXPECT_EQ(packing.statistics.shrunk_by_verification, 0U);
@@ -250,8 +250,8 @@ TEST(Adaptive, StartsFromALatticeWhereTheLargestRadiusIsSmall) {
                                         [](const Sphere& s) { return s.kind == SphereKind::lattice; });
   EXPECT_GT(on_lattice, 1000);
   EXPECT_GT(total_volume(packing), 730);
-  EXPECT_GE(measure_clearances(cube, packing.spheres).wall, 0);
-  EXPECT_GE(measure_clearances(cube, packing.spheres).gap.value(), 0);
+  EXPECT_GE(measure_clearances(SurfaceIndex(cube), packing.spheres).wall, 0);
+  EXPECT_GE(measure_clearances(SurfaceIndex(cube), packing.spheres).gap.value(), 0);
 }
 
 TEST(Adaptive, StartsFromALatticeInASlabWhereRadiiAreAlike) {
@@ -301,7 +301,7 @@ TEST(Adaptive, PlacesSpheresOfOneSizeWhereNoLatticeFits) {
                         Case{test::make_box({0, 0, 0}, {30, 30, 30}), {1, 0.5, 5.9999, 6}, 8},
                         Case{test::make_box({0, 0, 0}, {30, 30, 30}), {1, 0.5, 5, 5, roof}, 4},
                         Case{make_bracket(), {0.3, 0.2, 2.2, 2.2}, 20}}) {
-    const Packing packing = verify_packing(c.mesh, pack(c.mesh, c.limits));
+    const Packing packing = verify_packing(SurfaceIndex(c.mesh), pack(c.mesh, c.limits));
     EXPECT_GE(packing.spheres.size(), c.least);
     EXPECT_EQ(packing.statistics.dropped_by_verification, 0U);
     for (const Sphere& s : packing.spheres) EXPECT_GE(s.radius, c.limits.min_radius * (1 - 2e-9));
@@ -312,7 +312,7 @@ TEST(Adaptive, PlacesSpheresOfOneSizeWhereNoLatticeFits) {
 TEST(Adaptive, FillsASlabThickerThanItsLargestSpheres) {
   const Mesh slab = test::make_box({0, 0, 0}, {12, 12, 1});
   for (const double min_radius : {0.3, 0.4}) {
-    const Packing packing = verify_packing(slab, pack(slab, {0, 0, min_radius, 0.4}));
+    const Packing packing = verify_packing(SurfaceIndex(slab), pack(slab, {0, 0, min_radius, 0.4}));
     EXPECT_GT(total_volume(packing) / 144, 0.37);
     EXPECT_EQ(packing.statistics.dropped_by_verification, 0U);
   }

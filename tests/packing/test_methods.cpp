@@ -28,8 +28,8 @@ TEST_P(EveryPacking, KeepsItsLimits) {
   const PackingLimits limits{.wall = 0.2, .gap = 0.1, .min_radius = 0.1, .max_radius = 0.6};
   const Packing packing = pack(limits);
   EXPECT_GT(packing.spheres.size(), 50U);
-  EXPECT_FALSE(find_fault(torus_, packing).has_value());
-  const Packing verified = verify_packing(torus_, packing);
+  EXPECT_FALSE(find_fault(SurfaceIndex(torus_), packing).has_value());
+  const Packing verified = verify_packing(SurfaceIndex(torus_), packing);
   EXPECT_EQ(verified.statistics.dropped_by_verification + verified.statistics.shrunk_by_verification, 0U);
 }
 

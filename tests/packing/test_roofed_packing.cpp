@@ -76,10 +76,10 @@ TEST(RoofedPacking, KeepsWallAndGapInABoxWhateverIsUp) {
       const Packing packing = pack(box, limits_with(make_roof(overhang), 1));
       EXPECT_GT(roof_count(packing), 0);
       expect_limits_held(box, packing);
-      const Packing verified = verify_packing(box, packing);
+      const Packing verified = verify_packing(SurfaceIndex(box), packing);
       EXPECT_EQ(verified.spheres.size(), packing.spheres.size());
       EXPECT_EQ(verified.statistics.dropped_by_verification, 0);
-      EXPECT_FALSE(find_fault(box, packing).has_value());
+      EXPECT_FALSE(find_fault(SurfaceIndex(box), packing).has_value());
     }
   }
 }
@@ -101,20 +101,20 @@ TEST(RoofedPacking, VerificationFindsWhatIsTooNearAbove) {
   packing.limits = limits_with(make_roof({}), 1);
   packing.spheres = {{{20, 20, 10.7}, 9.5, SphereKind::adaptive}};
   // As a ball it leaves 2 mm above, as a void with a roof none.
-  ASSERT_TRUE(find_fault(box, packing).has_value());
-  EXPECT_EQ(find_fault(box, packing)->kind, PackingFault::Kind::wall);
-  EXPECT_TRUE(verify_packing(box, packing).spheres.empty());
+  ASSERT_TRUE(find_fault(SurfaceIndex(box), packing).has_value());
+  EXPECT_EQ(find_fault(SurfaceIndex(box), packing)->kind, PackingFault::Kind::wall);
+  EXPECT_TRUE(verify_packing(SurfaceIndex(box), packing).spheres.empty());
   packing.limits.roof = {};
-  EXPECT_FALSE(find_fault(box, packing).has_value());
+  EXPECT_FALSE(find_fault(SurfaceIndex(box), packing).has_value());
   // A void in the roof of another.
   const Mesh large = test::make_box({-40, -40, -40}, {40, 40, 40});
   packing.spheres = {{{0, 0, 0}, 9.5, SphereKind::adaptive}, {{0, 0, 13}, 2, SphereKind::adaptive}};
-  EXPECT_FALSE(find_fault(large, packing).has_value());
+  EXPECT_FALSE(find_fault(SurfaceIndex(large), packing).has_value());
   packing.limits.roof = make_roof({});
-  ASSERT_TRUE(find_fault(large, packing).has_value());
-  EXPECT_EQ(find_fault(large, packing)->kind, PackingFault::Kind::gap);
-  EXPECT_EQ(verify_packing(large, packing).spheres.size(), 1);
-  EXPECT_LT(measure_clearances(large, packing.spheres, packing.limits.roof).gap.value(), 0.9);
+  ASSERT_TRUE(find_fault(SurfaceIndex(large), packing).has_value());
+  EXPECT_EQ(find_fault(SurfaceIndex(large), packing)->kind, PackingFault::Kind::gap);
+  EXPECT_EQ(verify_packing(SurfaceIndex(large), packing).spheres.size(), 1);
+  EXPECT_LT(measure_clearances(SurfaceIndex(large), packing.spheres, packing.limits.roof).gap.value(), 0.9);
 }
 
 TEST(RoofedPacking, RoofsThatNoVoidNeedsChangeNothing) {

@@ -58,7 +58,7 @@ TEST(Verify, DropsWhatBreaksWallGapOrIsOutsideAndKeepsTheRest) {
       {{5, 11, 5}, 1.6, SphereKind::lattice},    // gap of 0.4 to the first
       {{15, 5, 15}, 0.4, SphereKind::lattice},   // below the least radius
   };
-  const Packing verified = verify_packing(box, packing);
+  const Packing verified = verify_packing(SurfaceIndex(box), packing);
   ASSERT_EQ(verified.spheres.size(), 2U);
   EXPECT_EQ(verified.spheres[0].centre, packing.spheres[0].centre);
   EXPECT_EQ(verified.spheres[0].radius, 4.0);
@@ -74,7 +74,7 @@ TEST(Verify, ShrinksWhatRoundingMadeTooLarge) {
   packing.spheres = {{{5, 5, 5}, 4 + 1e-6, SphereKind::lattice},
                      {{15, 5, 5}, 4, SphereKind::lattice},
                      {{5, 11, 5}, 1.5 + 2e-6, SphereKind::lattice}};
-  const Packing verified = verify_packing(box, packing);
+  const Packing verified = verify_packing(SurfaceIndex(box), packing);
   ASSERT_EQ(verified.spheres.size(), 3U);
   EXPECT_EQ(verified.statistics.shrunk_by_verification, 2U);
   EXPECT_GE(test::smallest_wall(box, verified.spheres), 1.0);
@@ -87,7 +87,7 @@ TEST(Verify, DropsASphereWhereTwoPartsOverlap) {
   Packing packing;
   packing.limits = {0, 0, 0, 5};
   packing.spheres = {{{2.5, 5, 5}, 2, SphereKind::lattice}, {{7.5, 5, 5}, 2, SphereKind::lattice}};
-  const Packing verified = verify_packing(mesh, packing);
+  const Packing verified = verify_packing(SurfaceIndex(mesh), packing);
   ASSERT_EQ(verified.spheres.size(), 1U);
   EXPECT_EQ(verified.spheres[0].centre.x, 2.5);
 }
@@ -98,13 +98,13 @@ TEST(FindFault, NamesTheFirstSphereThatBreaksALimit) {
   Packing packing;
   packing.limits = {1, 0.5, 0.5, 5};
   packing.spheres = {{{5, 5, 5}, 4, SphereKind::lattice}};
-  EXPECT_FALSE(find_fault(mesh, packing).has_value());
+  EXPECT_FALSE(find_fault(SurfaceIndex(mesh), packing).has_value());
 
   const auto fault_with = [&](Vec3d centre, double radius) {
     Packing changed = packing;
     changed.spheres.push_back({centre, radius, SphereKind::lattice});
     changed.spheres.push_back({{100, 0, 0}, 1, SphereKind::lattice});
-    return find_fault(mesh, changed);
+    return find_fault(SurfaceIndex(mesh), changed);
   };
   const auto wall = fault_with({5, 15, 15}, 4.5);
   ASSERT_TRUE(wall.has_value());
@@ -128,7 +128,7 @@ TEST(Verify, IsTheSameForAnyNumberOfThreads) {
   std::vector<std::vector<Sphere>> results;
   for (const std::size_t threads : {1U, 2U, 8U}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    results.push_back(verify_packing(torus, packing).spheres);
+    results.push_back(verify_packing(SurfaceIndex(torus), packing).spheres);
   }
   ASSERT_GT(results[0].size(), 100U);
   for (const std::vector<Sphere>& result : results) {
@@ -146,18 +146,18 @@ TEST(Clearances, AreMeasuredExactly) {
   const Mesh box = test::make_box({0, 0, 0}, {20, 20, 20});
   const std::vector<Sphere> spheres = {{{5, 5, 5}, 3, SphereKind::lattice},
                                        {{15, 5, 5}, 1, SphereKind::lattice}};
-  const Clearances clearances = measure_clearances(box, spheres);
+  const Clearances clearances = measure_clearances(SurfaceIndex(box), spheres);
   EXPECT_DOUBLE_EQ(clearances.wall, 2.0);
   ASSERT_TRUE(clearances.gap.has_value());
   EXPECT_DOUBLE_EQ(*clearances.gap, 6.0);
-  EXPECT_FALSE(measure_clearances(box, std::span(spheres).first(1)).gap.has_value());
+  EXPECT_FALSE(measure_clearances(SurfaceIndex(box), std::span(spheres).first(1)).gap.has_value());
 }
 
 TEST(LargestInscribedSphere, IsThatOfABoxAndOfATorus) {
-  const Sphere in_box = largest_inscribed_sphere(test::make_box({0, 0, 0}, {4, 10, 30}));
+  const Sphere in_box = largest_inscribed_sphere(SurfaceIndex(test::make_box({0, 0, 0}, {4, 10, 30})));
   EXPECT_NEAR(in_box.radius, 2.0, 0.02);
   const Mesh torus = test::make_torus(20, 3, 128, 64);
-  const Sphere in_torus = largest_inscribed_sphere(torus);
+  const Sphere in_torus = largest_inscribed_sphere(SurfaceIndex(torus));
   EXPECT_NEAR(in_torus.radius, 3.0 * std::cos(std::numbers::pi / 64), 0.03);
   EXPECT_NEAR(test::distance_to_surface(torus, in_torus.centre), in_torus.radius, 1e-9);
 }
