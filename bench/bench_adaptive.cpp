@@ -27,7 +27,6 @@
 namespace aerate::bench {
 namespace {
 
-using kernels::kInfinity;
 constexpr DeviceRequest kCpu{DeviceRequest::Kind::cpu, 0};
 
 struct Case {

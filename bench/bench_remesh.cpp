@@ -32,7 +32,6 @@ namespace aerate::bench {
 namespace {
 
 constexpr double kFarVoxels = 2;
-using kernels::kInfinity;
 constexpr double kStep = 0.01;  // mm off the surface, where rays begin
 constexpr int kRays = 128;      // over the whole sphere; half of them are used
 

@@ -234,7 +234,7 @@ Growth measure_growth(double triangles, double spheres, double adaptive_spheres)
   measure_series({"Hexagonal, R = 1 mm: more triangles", &Row::triangles, "triangle"},
                  with_triangles(triangles, hexagonal(1)), growth);
   measure_series({"Adaptive, r >= 0.4 mm: more triangles", &Row::triangles, "triangle"},
-                 with_triangles(triangles, adaptive(0.4, kernels::kInfinity)), growth);
+                 with_triangles(triangles, adaptive(0.4, kInfinity)), growth);
   // So many spheres there are, about, at scale 1.
   measure_series({"Hexagonal, 20,000 triangles: more spheres", &Row::spheres, "sphere"},
                  with_spheres(spheres, 5e6, [](double scale) { return hexagonal(0.0925 * scale); }), growth);

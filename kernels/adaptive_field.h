@@ -6,10 +6,10 @@
 #include "kernels/ball_grid.h"
 #include "kernels/constants.h"
 #include "kernels/nearest_point.h"
+#include "kernels/packed_shape.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
-#include "kernels/void_shape.h"
 #include "kernels/winding.h"
 
 // The clearance f(x), the largest radius of a void at x, that the adaptive packing places its voids by. For

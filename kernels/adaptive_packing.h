@@ -19,13 +19,13 @@
 #include "kernels/cuda_device.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/packed_shape.h"
 #include "kernels/packer.h"
 #include "kernels/roof.h"
 #include "kernels/tally.h"
 #include "kernels/triangle_bvh.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
-#include "kernels/void_shape.h"
 #include "kernels/winding.h"
 
 // The adaptive packing as one template over the executor (docs/packing.md says how it works and why).

@@ -11,10 +11,10 @@
 #include "kernels/constants.h"
 #include "kernels/growing_buffer.h"
 #include "kernels/paced.h"
+#include "kernels/packed_shape.h"
 #include "kernels/tally.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
-#include "kernels/void_shape.h"
 
 // Which of many candidates become balls: every one that meets no larger one (priority-parallel acceptance).
 

@@ -10,10 +10,10 @@
 #include "kernels/cell_grid.h"
 #include "kernels/constants.h"
 #include "kernels/growing_buffer.h"
+#include "kernels/packed_shape.h"
 #include "kernels/space_curve.h"
 #include "kernels/vec.h"
 #include "kernels/view.h"
-#include "kernels/void_shape.h"
 
 // The balls placed so far, in a grid that answers which of them is nearest.
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace aerate::kernels {
+namespace aerate {
 
 // In place of an index: there is none.
 inline constexpr std::uint32_t kNone = 0xffffffffu;
@@ -14,4 +14,4 @@ inline constexpr std::size_t kAsMuchAsIsWanted = std::numeric_limits<std::size_t
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-}  // namespace aerate::kernels
+}  // namespace aerate

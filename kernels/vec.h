@@ -52,6 +52,11 @@ AERATE_HD inline T length(Vec3<T> a) {
   return std::sqrt(dot(a, a));
 }
 
+template <typename T>
+AERATE_HD inline Vec3<T> normalised(Vec3<T> a) {
+  return a * (1 / length(a));
+}
+
 // std::min and std::max are not device functions; these also fix which operand is returned for signed zeros.
 template <typename T>
 AERATE_HD constexpr T min_of(T a, T b) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
@@ -25,10 +25,6 @@ static_assert(kCoarsestRadiusVoxels >= LevelSet::kSmallestRadiusVoxels);
 
 // Sagitta of a relaxed template times its squared radius in voxels, as measured: 0.145..0.18 over the ladder.
 constexpr double kTypicalSagitta = 0.15;
-
-Vec3d normalised(Vec3d v) {
-  return v * (1 / length(v));
-}
 
 // nullopt if a triangle does not face outward.
 std::optional<BallTemplate> measured(const StarTriangulation& triangulation) {
@@ -134,9 +130,11 @@ const BallTemplate* BallLadder::find(std::size_t level) {
 }
 
 FailureError too_many_triangles(const Sphere& ball, double tolerance) {
-  return FailureError("a void of radius " + std::to_string(ball.radius) + " mm at a tolerance of " +
-                          std::to_string(tolerance) + " mm needs more than a million triangles",
-                      "raise --tolerance");
+  return FailureError(
+      fmt::format("a void of radius {:f} mm at a tolerance of {:f} mm needs more than a million "
+                  "triangles",
+                  ball.radius, tolerance),
+      "raise --tolerance");
 }
 
 void BallLadder::prepare(std::span<const Sphere> balls, double tolerance) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <string>
 #include <tbb/parallel_for.h>
 #include <utility>
 #include <variant>
@@ -221,12 +221,12 @@ class DrainedCarver {
     }
     if (pending.empty()) return;
     const Sphere& ball = balls_[pending.front()];
-    throw FailureError("the openings of a void of radius " + std::to_string(ball.radius) + " mm near (" +
-                           std::to_string(ball.centre.x) + ", " + std::to_string(ball.centre.y) + ", " +
-                           std::to_string(ball.centre.z) + ") mm cannot be meshed within a tolerance of " +
-                           std::to_string(tolerance_) + " mm",
-                       "raise --tolerance or --gap, give a smaller --channel-diameter, or move the model "
-                       "nearer to the origin");
+    throw FailureError(
+        fmt::format("the openings of a void of radius {:f} mm near ({:f}, {:f}, {:f}) mm cannot "
+                    "be meshed within a tolerance of {:f} mm",
+                    ball.radius, ball.centre.x, ball.centre.y, ball.centre.z, tolerance_),
+        "raise --tolerance or --gap, give a smaller --channel-diameter, or move the model "
+        "nearer to the origin");
   }
 
   void add(Triangle t) { solid_.mesh.triangles.push_back(t); }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "kernels/constants.h"
 #include "printing/star_triangulation.h"
 
 namespace aerate {
@@ -89,7 +90,6 @@ class Cutter {
 
  private:
   enum class Kind : std::uint8_t { below, ring, cap };
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   // Moves what is above the ring, or near to it, towards the axis and down to a shallow dome.
   std::vector<Vec3d> bend_cap(const BallTemplate& ball) {

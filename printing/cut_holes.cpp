@@ -1,9 +1,9 @@
 #include "printing/cut_holes.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <iterator>
 #include <optional>
-#include <string>
 #include <tbb/parallel_for.h>
 #include <utility>
 
@@ -22,7 +22,7 @@ CuttingPrism prism_of(const WayOut& way, const Roof& roof, double tolerance) {
   const Opening opening = opening_of(tube, TubeEnd::start, way.ball, roof, sides_of(tube, tolerance));
   const Vec3d along = tube.end - tube.start;
   CuttingPrism prism;
-  prism.axis = along * (1 / length(along));
+  prism.axis = normalised(along);
   prism.start = tube.start - prism.axis * kPrismMargin;
   prism.length = length(along) + kPrismMargin + kCutBeyond * tube.radius;
   prism.radius = tube.radius;
@@ -110,8 +110,8 @@ bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const WayOut& wa
 
 FailureError cannot_be_cut(const EscapeHole& hole) {
   const Vec3d end = hole.tube.end;
-  return FailureError("the surface cannot be cut for an escape hole near (" + std::to_string(end.x) + ", " +
-                          std::to_string(end.y) + ", " + std::to_string(end.z) + ") mm",
+  return FailureError(fmt::format("the surface cannot be cut for an escape hole near ({:f}, {:f}, {:f}) mm",
+                                  end.x, end.y, end.z),
                       "ask for other places with --escape-hole");
 }
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/constants.h"
+
 namespace aerate {
 namespace {
 
 // Half of an edge and a margin: see `open_ball`.
 constexpr double kFreeShareOfEdge = 0.6;
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 double longest_edge(std::span<const Vec3d> ring) {
   double longest = 0;
@@ -22,7 +22,7 @@ double longest_edge(std::span<const Vec3d> ring) {
 // Is the point within `margin` of the middle of an edge of an opening's rim?
 bool is_near_rim(Vec3d point, const Opening& opening, double margin) {
   const Vec3d along = opening.tube.end - opening.tube.start;
-  const Vec3d axis = along * (1 / length(along));
+  const Vec3d axis = normalised(along);
   const Vec3d from_start = point - opening.tube.start;
   const double from_axis = length(from_start - axis * dot(from_start, axis));
   // The rim is on the tube: most points are told apart by that.
@@ -65,7 +65,7 @@ class BallOpener {
       std::vector<std::uint32_t> ring;
       for (const Vec3d p : opening.ring) {
         const Vec3d from_centre = p - ball_.centre;
-        const auto vertex = triangulation_.insert(from_centre * (1 / length(from_centre)), last);
+        const auto vertex = triangulation_.insert(normalised(from_centre), last);
         if (!vertex) return false;
         triangulation_.flip_to_hull_around(*vertex);
         ring.push_back(last = *vertex);

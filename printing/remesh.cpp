@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <tbb/parallel_for.h>
 #include <vector>
 
@@ -24,17 +24,6 @@ constexpr double kBytesPerTriangle = 100;
 // A void whose surface has this many voxels across cannot be mistaken for noise.
 constexpr double kSmallestVoidRadiusVoxels = 2;
 static_assert(kSmallestVoidRadiusVoxels >= LevelSet::kSmallestRadiusVoxels);
-
-std::string to_text(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
-
-std::string to_text(Vec3d p) {
-  return "(" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + ") mm";
-}
 
 // Two digits, rounded to the safe side.
 double rounded_up(double value) {
@@ -123,14 +112,15 @@ std::vector<const VoidShell*> find_shells(const std::vector<std::vector<Sphere>>
 }
 
 FailureError too_much_memory(const Mesh& mesh, double voxel_size, double bytes, double max_bytes) {
-  const auto mebibytes = [](double b) { return to_text(std::ceil(b / (1024.0 * 1024.0))) + " MiB"; };
+  constexpr double kMebibyte = 1024.0 * 1024.0;
   const double for_voxels = max_bytes - kBytesPerTriangle * static_cast<double>(mesh.triangles.size());
   const double would_do = std::sqrt(kBytesPerSurfaceVoxel * surface_area(mesh) / for_voxels);
-  return FailureError("remeshing at a voxel size of " + to_text(voxel_size) + " mm would need about " +
-                          mebibytes(bytes) + " of memory, more than the " + mebibytes(max_bytes) +
-                          " there are for it",
-                      for_voxels > 0 ? "use --voxel " + to_text(rounded_up(would_do)) + " or more"
-                                     : std::string("use a model of fewer triangles"));
+  return FailureError(
+      fmt::format("remeshing at a voxel size of {:g} mm would need about {:.0f} MiB of memory, "
+                  "more than the {:.0f} MiB there are for it",
+                  voxel_size, std::ceil(bytes / kMebibyte), std::ceil(max_bytes / kMebibyte)),
+      for_voxels > 0 ? fmt::format("use --voxel {:g} or more", rounded_up(would_do))
+                     : "use a model of fewer triangles");
 }
 
 FailureError too_small_for_voxels(const Packing& packing, double voxel_size) {
@@ -140,11 +130,12 @@ FailureError too_small_for_voxels(const Packing& packing, double voxel_size) {
     smallest = std::min(smallest, sphere.radius);
     if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size) ++count;
   }
-  return FailureError(std::to_string(count) + " of " + std::to_string(packing.spheres.size()) +
-                          " voids are too small for a voxel size of " + to_text(voxel_size) +
-                          " mm: the smallest has a radius of " + to_text(smallest) + " mm",
-                      "use --voxel " + to_text(rounded_down(smallest / kSmallestVoidRadiusVoxels)) +
-                          " or less, or raise --min-radius");
+  return FailureError(
+      fmt::format(
+          "{} of {} voids are too small for a voxel size of {:g} mm: the smallest has a radius of {:g} mm",
+          count, packing.spheres.size(), voxel_size, smallest),
+      fmt::format("use --voxel {:g} or less, or raise --min-radius",
+                  rounded_down(smallest / kSmallestVoidRadiusVoxels)));
 }
 
 // The void of sphere `lost` has no shell of its own.
@@ -159,12 +150,13 @@ FailureError runs_together(const Packing& packing, std::size_t lost, double voxe
   }
   const bool neighbour_is_near = gap < 2 * voxel_size;
   const double voxel_wanted = neighbour_is_near ? std::max(gap, 0.0) / 2 : voxel_size / 2;
-  return FailureError("the void at " + to_text(sphere.centre) + " runs " +
-                          (neighbour_is_near ? "together with its neighbour, " + to_text(gap) + " mm away,"
-                                             : std::string("into the surface")) +
-                          " at a voxel size of " + to_text(voxel_size) + " mm",
-                      voxel_wanted > 0 ? "use --voxel " + to_text(rounded_down(voxel_wanted)) + " or less"
-                                       : std::string("raise --gap"));
+  return FailureError(
+      fmt::format("the void at ({:g}, {:g}, {:g}) mm runs {} at a voxel size of {:g} mm", sphere.centre.x,
+                  sphere.centre.y, sphere.centre.z,
+                  neighbour_is_near ? fmt::format("together with its neighbour, {:g} mm away,", gap)
+                                    : "into the surface",
+                  voxel_size),
+      voxel_wanted > 0 ? fmt::format("use --voxel {:g} or less", rounded_down(voxel_wanted)) : "raise --gap");
 }
 
 }  // namespace
@@ -186,7 +178,7 @@ ModelLevelSet::ModelLevelSet(const Mesh& mesh, double voxel_size, double max_byt
     if (one_shell || !is_noise(shell, voxel_size)) append(surface, shell);
   }
   if (surface.triangles.empty()) {
-    throw FailureError("nothing is left of the model at a voxel size of " + to_text(voxel_size) + " mm",
+    throw FailureError(fmt::format("nothing is left of the model at a voxel size of {:g} mm", voxel_size),
                        "use a smaller --voxel");
   }
   monitor.check_interrupted();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <fmt/format.h>
 
 #include "core/error.h"
 #include "kernels/sphere.h"
@@ -30,11 +30,11 @@ inline void check_resolvable(const Sphere& ball, double tolerance) {
   constexpr double kMarginsPerRadius = 256;
   const double margin = rounding_margin(ball);
   if (tolerance >= kMarginsPerTolerance * margin && ball.radius >= kMarginsPerRadius * margin) return;
-  throw FailureError("a void of radius " + std::to_string(ball.radius) + " mm at coordinates up to " +
-                         std::to_string(largest_coordinate(ball)) +
-                         " mm cannot be kept within a tolerance of " + std::to_string(tolerance) +
-                         " mm: coordinates in a mesh file are single precision",
-                     "move the model nearer to the origin, or raise --tolerance");
+  throw FailureError(
+      fmt::format("a void of radius {:f} mm at coordinates up to {:f} mm cannot be kept within a "
+                  "tolerance of {:f} mm: coordinates in a mesh file are single precision",
+                  ball.radius, largest_coordinate(ball), tolerance),
+      "move the model nearer to the origin, or raise --tolerance");
 }
 
 }  // namespace aerate

@@ -4,11 +4,10 @@
 #include <limits>
 
 #include "core/disjoint_sets.h"
+#include "kernels/constants.h"
 
 namespace aerate {
 namespace {
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // The shell of each triangle, numbered by first triangle, and their number.
 struct ShellNumbers {

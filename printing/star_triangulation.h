@@ -325,7 +325,6 @@ class StarTriangulation {
   static constexpr std::uint32_t next(std::uint32_t half_edge) {
     return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
   }
-  static Vec3d normalised(Vec3d v) { return v * (1 / length(v)); }
 
   std::vector<Vec3d> positions_;
   std::vector<Triangle> triangles_;

@@ -4,10 +4,10 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <fmt/format.h>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
@@ -164,7 +164,7 @@ Solid assemble(Mesh outer, const Packing& packing, std::span<const VoidTemplate>
   }
   const std::size_t triangle_count = solid.parts.back().end();
   if (first_vertices.back() > std::numeric_limits<std::uint32_t>::max()) {
-    throw FailureError("the voids would take " + std::to_string(triangle_count) + " triangles",
+    throw FailureError(fmt::format("the voids would take {} triangles", triangle_count),
                        "raise --tolerance, or set --max-triangles");
   }
 

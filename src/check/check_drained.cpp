@@ -11,6 +11,7 @@
 #include "check/check_failure.h"
 #include "check/crossings.h"
 #include "check/tube_cut.h"
+#include "kernels/constants.h"
 #include "mesh/outward_shells.h"
 #include "mesh/topology.h"
 
@@ -99,7 +100,7 @@ std::size_t count_sealed(const Mesh& read_back, const Topology& topology, const 
   std::vector<bool> is_sealed(labels.count, false);
   for (std::size_t i = expected.solid.outer_triangle_count(); i < read_back.triangles.size(); ++i) {
     const std::uint32_t label = labels.of_triangle[i];
-    if (label == kNoShell) fail_check("triangle {} belongs to no shell", i);
+    if (label == kNone) fail_check("triangle {} belongs to no shell", i);
     if (topology.shells[label].volume <= 0) is_sealed[label] = true;
   }
   const std::vector<EscapeHole>& holes = expected.drainage->holes;

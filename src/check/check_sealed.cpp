@@ -50,11 +50,7 @@ Finding look_at(std::span<const Triangle> triangles) {
 
 // A new surface: what inspection found out about it was before vertices at one place became one.
 void require_sound_outer(const Mesh& read_back, const Expected& expected) {
-  Mesh outer{read_back.positions, {}};
-  const std::span<const Triangle> triangles = triangles_of(read_back, expected.solid.parts.front());
-  outer.triangles.assign(triangles.begin(), triangles.end());
-  outer.positions.resize(vertices_of(triangles).end);
-  const Inspection found = inspect(outer);
+  const Inspection found = inspect(submesh(read_back, triangles_of(read_back, expected.solid.parts.front())));
   if (found.open_edges > 0) fail_check("the outer surface has {} open edges", found.open_edges);
   if (found.misoriented_edges > 0)
     fail_check("the outer surface has {} misoriented edges", found.misoriented_edges);

@@ -9,20 +9,22 @@
 
 #include "check/check_failure.h"
 #include "check/measure_errors.h"
-#include "check/planned_shape.h"
 #include "check/polled_loop.h"
+#include "core/void_shape.h"
 
 namespace aerate {
 namespace {
 
 MeasuredVoid measure_void(const Mesh& mesh, const SolidPart& part, const Sphere& planned,
-                          PlannedShape& shape) {
+                          const VoidShape& shape) {
   MeasuredVoid measured;
+  double radius = 0;
   double volume_times_6 = 0;
   Vec3d moment_times_24{0, 0, 0};
   for (const Triangle& t : triangles_of(mesh, part)) {
     const kernels::Facet facet = facet_of(mesh, t);
-    for (const Vec3f& p : {facet.a, facet.b, facet.c}) shape.hold(p);
+    for (const Vec3f& p : {facet.a, facet.b, facet.c})
+      radius = std::max(radius, shape.least_radius_holding(to_double(p)));
     measured.depth = std::max(measured.depth, shape.depth(facet));
     const Vec3d a = to_double(facet.a) - planned.centre;
     const Vec3d b = to_double(facet.b) - planned.centre;
@@ -33,7 +35,7 @@ MeasuredVoid measure_void(const Mesh& mesh, const SolidPart& part, const Sphere&
     volume_times_6 += determinant;
     moment_times_24 = moment_times_24 + (a + b + c) * determinant;
   }
-  measured.ball = {planned.centre, shape.radius(), planned.kind};
+  measured.ball = {planned.centre, radius, planned.kind};
   measured.volume = volume_times_6 / 6.0;
   measured.first_moment = moment_times_24 * (1.0 / 24.0) + planned.centre * measured.volume;
   return measured;
@@ -51,7 +53,7 @@ std::optional<std::string> flaw_of_place(const MeasuredVoid& measured, const Sph
   return std::nullopt;
 }
 
-std::optional<std::string> flaw_of_volume(const MeasuredVoid& measured, const PlannedShape& shape,
+std::optional<std::string> flaw_of_volume(const MeasuredVoid& measured, const VoidShape& shape,
                                           double tolerance) {
   const double least = shape.volume_within(tolerance), most = shape.volume();
   if (measured.volume >= least * (1 - kSummationError) && measured.volume <= most * (1 + kSummationError))
@@ -68,7 +70,7 @@ std::vector<MeasuredVoid> check_voids(const Mesh& read_back, const Expected& exp
   std::vector<std::optional<std::string>> flaws(parts.size());
   for_each_polled(parts.size(), kVoidsPerPiece, monitor, [&](std::size_t i) {
     const Sphere& planned = expected.packing.spheres[i];
-    PlannedShape shape(expected.packing.limits.roof, planned);
+    const VoidShape shape(planned, expected.packing.limits.roof);
     voids[i] = measure_void(read_back, parts[i], planned, shape);
     if (drains && !voids[i].faces_centre) flaws[i] = "a triangle does not face its centre";
     if (!drains && voids[i].volume <= 0) flaws[i] = "it is not oriented inward";

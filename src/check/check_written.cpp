@@ -16,10 +16,10 @@
 #include "check/check_voids.h"
 #include "check/measure_errors.h"
 #include "check/outer_surface.h"
-#include "check/planned_shape.h"
 #include "check/polled_loop.h"
 #include "check/same_triangles.h"
 #include "check/tube_cut.h"
+#include "core/void_shape.h"
 
 namespace aerate {
 namespace {
@@ -127,7 +127,7 @@ double most_removed(const Expected& expected) {
 double least_removed(const Expected& expected) {
   double volume = 0;
   for (const Sphere& ball : expected.packing.spheres)
-    volume += PlannedShape(expected.packing.limits.roof, ball).volume_within(expected.tolerance);
+    volume += VoidShape(ball, expected.packing.limits.roof).volume_within(expected.tolerance);
   return volume;
 }
 

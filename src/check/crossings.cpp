@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "check/check_failure.h"
-#include "check/mesh_part.h"
 #include "check/tube_cut.h"
 #include "mesh/inspect.h"
 
@@ -16,6 +15,13 @@ namespace {
 
 // How far round a hole triangles are looked at, mm.
 constexpr double kNeighbourhood = 0.5;
+
+Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& indices) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(indices.size());
+  for (const std::uint32_t i : indices) triangles.push_back(mesh.triangles[i]);
+  return submesh(mesh, triangles);
+}
 
 }  // namespace
 

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 #include <vector>
 
+#include "kernels/constants.h"
+
 namespace aerate {
 namespace {
-
-constexpr std::uint32_t kNone = 0xffffffffu;
 
 // The directed edges of some triangles; edge 3 t + i runs from corner i of triangle t to the next one. A CSR
 // over the vertices that edges begin at, numbered from the lowest.

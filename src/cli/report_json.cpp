@@ -152,7 +152,7 @@ Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
   for (const EscapeHole& hole : drainage.plan.holes) {
     const Vec3d along = hole.tube.end - hole.tube.start;
     holes.push_back({{"place_mm", json_of(hole.tube.end)},
-                     {"outwards", json_of(along * (1 / length(along)))},
+                     {"outwards", json_of(normalised(along))},
                      {"network", hole.network}});
   }
   return {{"channel_diameter_mm", 2 * drainage.request.channel_radius},

@@ -14,7 +14,7 @@ constexpr std::size_t kMostSides = 256;
 
 Vec3d direction_of(const Tube& tube) {
   const Vec3d along = tube.end - tube.start;
-  return along * (1 / length(along));
+  return normalised(along);
 }
 
 TubeFrame frame_of(const Tube& tube, Vec3d up) {
@@ -25,7 +25,7 @@ TubeFrame frame_of(const Tube& tube, Vec3d up) {
     const Vec3d other = along_x ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
     down = other - axis * dot(axis, other);
   }
-  down = down * (1 / length(down));
+  down = normalised(down);
   return {axis, down, cross(axis, down)};
 }
 

@@ -1,12 +1,29 @@
 #include "core/mesh.h"
 
 #include <limits>
+#include <unordered_map>
 
 namespace aerate {
 
+Mesh submesh(const Mesh& mesh, std::span<const Triangle> triangles) {
+  Mesh part;
+  part.triangles.reserve(triangles.size());
+  std::unordered_map<std::uint32_t, std::uint32_t> number_of;
+  for (Triangle t : triangles) {
+    for (std::uint32_t& vertex : t) {
+      const auto next = static_cast<std::uint32_t>(part.positions.size());
+      const auto [place, is_new] = number_of.try_emplace(vertex, next);
+      if (is_new) part.positions.push_back(mesh.positions[vertex]);
+      vertex = place->second;
+    }
+    part.triangles.push_back(t);
+  }
+  return part;
+}
+
 Box3f bounding_box(const Mesh& mesh) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Box3f box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  Box3f box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
       box.lower = min_of(box.lower, mesh.positions[vertex]);

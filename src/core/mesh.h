@@ -26,6 +26,9 @@ inline kernels::Facet facet_of(const Mesh& mesh, const Triangle& t) {
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
 
+// Some triangles of the mesh with vertices of their own, in order of first use: those that shared one still do.
+Mesh submesh(const Mesh& mesh, std::span<const Triangle> triangles);
+
 // Smallest box around the positions that triangles use; empty (lower > upper) for a mesh without triangles.
 Box3f bounding_box(const Mesh& mesh);
 

@@ -8,7 +8,7 @@ UprightFrame::UprightFrame(Vec3d up) : z(up) {
   const double ax = std::abs(up.x), ay = std::abs(up.y), az = std::abs(up.z);
   const Vec3d aside = ax <= ay && ax <= az ? Vec3d{1, 0, 0} : ay <= az ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   const Vec3d across = aside - up * dot(aside, up);
-  x = across * (1 / length(across));
+  x = normalised(across);
   y = cross(z, x);
 }
 

@@ -4,7 +4,6 @@
 #include <iterator>
 #include <memory>
 #include <span>
-#include <unordered_map>
 #include <zip.h>
 
 #include "files/decimal.h"
@@ -109,26 +108,8 @@ void append_mesh(std::string& out, std::span<const Vec3f> positions, std::span<c
   out += "</triangles>\n</mesh>\n";
 }
 
-// So many triangles from the first on, with only the vertices they use, in order of first use.
-Mesh cut_out(const Mesh& mesh, std::size_t first, std::size_t count) {
-  Mesh own;
-  own.triangles.reserve(count);
-  std::unordered_map<std::uint32_t, std::uint32_t> numbers;
-  for (std::size_t i = first; i < first + count; ++i) {
-    Triangle triangle = mesh.triangles[i];
-    for (std::uint32_t& vertex : triangle) {
-      const auto next = static_cast<std::uint32_t>(own.positions.size());
-      const auto [at, is_new] = numbers.try_emplace(vertex, next);
-      if (is_new) own.positions.push_back(mesh.positions[vertex]);
-      vertex = at->second;
-    }
-    own.triangles.push_back(triangle);
-  }
-  return own;
-}
-
 void begin_object(std::string& out, std::size_t id) {
-  out += "<object id=\"" + std::to_string(id) + "\" type=\"model\">\n";
+  out += fmt::format("<object id=\"{}\" type=\"model\">\n", id);
 }
 
 void append_mesh_object(std::string& out, std::size_t id, const Mesh& mesh) {
@@ -141,13 +122,13 @@ void append_mesh_object(std::string& out, std::size_t id, const Mesh& mesh) {
 std::size_t append_components(std::string& out, const Mesh& mesh, const std::vector<std::size_t>& counts) {
   std::size_t first = 0, id = 0;
   for (const std::size_t count : counts) {
-    append_mesh_object(out, ++id, cut_out(mesh, first, count));
+    append_mesh_object(out, ++id, submesh(mesh, std::span(mesh.triangles).subspan(first, count)));
     first += count;
   }
   const std::size_t object = id + 1;
   begin_object(out, object);
   out += "<components>\n";
-  for (id = 1; id < object; ++id) out += "<component objectid=\"" + std::to_string(id) + "\"/>\n";
+  for (id = 1; id < object; ++id) out += fmt::format("<component objectid=\"{}\"/>\n", id);
   out += "</components>\n</object>\n";
   return object;
 }
@@ -164,7 +145,7 @@ std::string model_document(const Mesh& mesh, const ThreeMfExtras& extras) {
   } else {
     object = append_components(out, mesh, extras.component_triangles);
   }
-  out += "</resources>\n<build>\n<item objectid=\"" + std::to_string(object) + "\"/>\n</build>\n</model>\n";
+  out += fmt::format("</resources>\n<build>\n<item objectid=\"{}\"/>\n</build>\n</model>\n", object);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/constants.h"
 #include "mesh/topology.h"
 
 namespace aerate {
@@ -31,7 +32,7 @@ std::vector<OpenEdge> collect_open_edges(const Mesh& mesh, const EdgeUses& uses)
 class BoundaryWalk {
  public:
   BoundaryWalk(std::vector<OpenEdge> edges, std::size_t vertex_count)
-      : edges_(std::move(edges)), place_on_path_(edges_.empty() ? 0 : vertex_count, kNotOnPath) {
+      : edges_(std::move(edges)), place_on_path_(edges_.empty() ? 0 : vertex_count, kNone) {
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
       ends_.emplace_back(edges_[e].from, e);
       ends_.emplace_back(edges_[e].to, e);
@@ -47,14 +48,12 @@ class BoundaryWalk {
   }
 
  private:
-  static constexpr std::uint32_t kNotOnPath = 0xffffffffu;
-
   void walk_from(std::uint32_t start) {
     path_.clear();
     step_to(start);
     while (const auto next = take_edge_at(path_.back())) {
       const std::uint32_t place = place_on_path_[*next];
-      if (place == kNotOnPath) {
+      if (place == kNone) {
         step_to(*next);
       } else {
         cut_off(place, true);
@@ -65,7 +64,7 @@ class BoundaryWalk {
     if (path_.size() > 1) {
       cut_off(0, false);
     } else {
-      place_on_path_[path_.front()] = kNotOnPath;
+      place_on_path_[path_.front()] = kNone;
     }
   }
 
@@ -77,7 +76,7 @@ class BoundaryWalk {
   void cut_off(std::uint32_t place, bool closed) {
     const auto first = path_.begin() + place;
     chains_.push_back({{first, path_.end()}, closed});
-    for (auto vertex = first; vertex != path_.end(); ++vertex) place_on_path_[*vertex] = kNotOnPath;
+    for (auto vertex = first; vertex != path_.end(); ++vertex) place_on_path_[*vertex] = kNone;
     path_.erase(first, path_.end());
   }
 

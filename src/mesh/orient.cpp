@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/constants.h"
 #include "kernels/winding.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
@@ -17,10 +18,9 @@ void turn(Triangle& triangle) {
 
 // Highest vertex of each shell (of equal ones the first): what lies above it belongs to other shells.
 std::vector<Vec3d> top_vertices(const Mesh& mesh, const ShellLabels& labels) {
-  constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> top(labels.count, kNone);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (labels.of_triangle[t] == kNoShell) continue;
+    if (labels.of_triangle[t] == kNone) continue;
     std::uint32_t& best = top[labels.of_triangle[t]];
     for (const std::uint32_t vertex : mesh.triangles[t]) {
       if (best == kNone || mesh.positions[vertex].z > mesh.positions[best].z ||
@@ -46,7 +46,7 @@ std::vector<int> windings_of_others(const Mesh& mesh, const ShellLabels& labels,
     const Vec3d p = tops[shell];
     winding.for_each_near(p.x, p.y, [&](std::uint32_t facet) {
       const std::uint32_t other = labels.of_triangle[facet];
-      if (other == kNoShell || other == shell || !shells[other].closed) return;
+      if (other == kNone || other == shell || !shells[other].closed) return;
       windings[shell] += kernels::winding_detail::facet_crossing(winding.facets[facet], p);
     });
   }
@@ -84,7 +84,6 @@ class Neighbours {
     std::uint32_t triangle = kNone;
     bool agrees = true;  // about the orientation
   };
-  static constexpr std::uint32_t kNone = 0xffffffffu;
 
   const Side& across(std::uint32_t triangle, std::uint32_t corner) const {
     return opposite_[3 * triangle + corner];
@@ -160,7 +159,7 @@ Repaired orient_consistently(Mesh mesh) {
   }
   for (std::size_t t = 0; t < turned.size(); ++t) {
     const std::uint32_t shell = labels.of_triangle[t];
-    if (shell == kNoShell || before[shell] == 0 || after[shell] > 0 || !turned[t]) continue;
+    if (shell == kNone || before[shell] == 0 || after[shell] > 0 || !turned[t]) continue;
     turn(mesh.triangles[t]);
     ++turned_count;
   }
@@ -199,7 +198,7 @@ Repaired orient_outward(Mesh mesh) {
   if (turned == 0) return {std::move(mesh), {}};
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t label = labels.of_triangle[t];
-    if (label != kNoShell && inside_out[label]) turn(mesh.triangles[t]);
+    if (label != kNone && inside_out[label]) turn(mesh.triangles[t]);
   }
   std::string notice =
       turned == shells.size()

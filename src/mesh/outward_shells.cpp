@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/constants.h"
 #include "mesh/topology.h"
 
 namespace aerate {
@@ -19,7 +20,7 @@ OutwardShells::OutwardShells(const Mesh& model, const Inspection& inspection, co
   std::vector<Triangle> outward;
   for (std::size_t i = 0; i < model.triangles.size(); ++i) {
     const std::uint32_t label = labels.of_triangle[i];
-    if (label != kNoShell && shells[label].volume >= 0) outward.push_back(model.triangles[i]);
+    if (label != kNone && shells[label].volume >= 0) outward.push_back(model.triangles[i]);
   }
   own_.emplace(model.positions, outward);
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <tbb/parallel_for.h>
 
+#include "kernels/constants.h"
 #include "kernels/winding.h"
 
 namespace aerate {
@@ -73,7 +74,7 @@ class LineMeasure {
  private:
   void mark(std::uint32_t facet) {
     const std::uint32_t label = labels_.of_triangle[facet];
-    if (label == kNoShell) return;
+    if (label == kNone) return;
     std::atomic_ref<std::uint8_t>(overlapping_[label]).store(1, std::memory_order_relaxed);
   }
 

@@ -8,6 +8,7 @@
 #include <tbb/parallel_scan.h>
 
 #include "core/disjoint_sets.h"
+#include "kernels/constants.h"
 
 namespace aerate {
 namespace {
@@ -111,11 +112,11 @@ ShellLabels label_shells(const Mesh& mesh, const EdgeUses& uses) {
 
   // A set gets its label when its first proper triangle turns up; one without any keeps none.
   ShellLabels labels;
-  labels.of_triangle.assign(triangles, kNoShell);
-  std::vector<std::uint32_t> label_of_root(triangles, kNoShell);
+  labels.of_triangle.assign(triangles, kNone);
+  std::vector<std::uint32_t> label_of_root(triangles, kNone);
   for (std::size_t t = 0; t < triangles; ++t) {
     std::uint32_t& label = label_of_root[sets.root(static_cast<std::uint32_t>(t))];
-    if (label == kNoShell && !has_repeated_vertex(mesh.triangles[t])) {
+    if (label == kNone && !has_repeated_vertex(mesh.triangles[t])) {
       label = static_cast<std::uint32_t>(labels.count++);
     }
   }
@@ -126,12 +127,11 @@ ShellLabels label_shells(const Mesh& mesh, const EdgeUses& uses) {
 }
 
 std::vector<Shell> describe_shells(const Mesh& mesh, const ShellLabels& labels) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kFar = std::numeric_limits<float>::infinity();
   std::vector<Shell> shells(labels.count);
-  for (Shell& shell : shells)
-    shell.box = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (Shell& shell : shells) shell.box = {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (labels.of_triangle[t] == kNoShell) continue;
+    if (labels.of_triangle[t] == kNone) continue;
     Shell& shell = shells[labels.of_triangle[t]];
     ++shell.triangle_count;
     for (const std::uint32_t vertex : mesh.triangles[t]) {
@@ -147,7 +147,7 @@ std::vector<Shell> describe_shells(const Mesh& mesh, const ShellLabels& labels) 
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t label = labels.of_triangle[t];
-    if (label == kNoShell) continue;
+    if (label == kNone) continue;
     const Triangle& triangle = mesh.triangles[t];
     const Vec3d a = to_double(mesh.positions[triangle[0]]) - centres[label];
     const Vec3d b = to_double(mesh.positions[triangle[1]]) - centres[label];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "kernels/constants.h"
 #include "mesh/inspect.h"
 
 // How the triangles of a mesh hang together. Triangles with a repeated vertex run along their edge once in
@@ -72,9 +73,8 @@ EdgeBalance balance_of(const Mesh& mesh, std::uint32_t low, std::span<const Edge
 
 // Shells: the edge-connected components of the triangles without a repeated vertex, numbered by their first
 // triangle.
-inline constexpr std::uint32_t kNoShell = 0xffffffffu;
 struct ShellLabels {
-  std::vector<std::uint32_t> of_triangle;  // kNoShell for a triangle that touches none
+  std::vector<std::uint32_t> of_triangle;  // kNone for a triangle that touches none
   std::size_t count = 0;
 };
 ShellLabels label_shells(const Mesh& mesh, const EdgeUses& uses);

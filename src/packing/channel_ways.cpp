@@ -82,7 +82,7 @@ class ChannelFinder {
     if (!shape.has_roof()) return inside;
     for (int i = 0; i < kMostShifts; ++i) {
       const Vec3d along = to - inside;
-      const auto way = shape.way_below_roof(along * (1 / length(along)), radius_);
+      const auto way = shape.way_below_roof(normalised(along), radius_);
       if (!way) return inside;
       const double excess = dot(inside - shape.centre(), way->across) - way->highest;
       if (excess <= 0) return inside;

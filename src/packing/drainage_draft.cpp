@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "kernels/constants.h"
+
 namespace aerate {
 namespace {
 
@@ -69,11 +71,11 @@ double volume_of(const DrainageTask& task, const Members& members) {
 void leave_out(const DrainageTask& task, Draft& draft, const Members& members,
                std::size_t UndrainedVoids::*reason) {
   for (const std::uint32_t i : members) {
-    draft.network_of[i] = kOutside;
+    draft.network_of[i] = kNone;
     ++(draft.dropped.*reason);
     draft.dropped.volume += task.voids[i].volume();
   }
-  draft.tubes.remove_tubes_of([&](std::uint32_t i) { return draft.network_of[i] == kOutside; });
+  draft.tubes.remove_tubes_of([&](std::uint32_t i) { return draft.network_of[i] == kNone; });
 }
 
 std::ptrdiff_t hole_count(const Draft& draft, std::uint32_t network) {
@@ -123,9 +125,9 @@ bool open(DrainageTask& task, Draft& draft, const Members& voids, Vec3d down) {
 PlannedDrainage planned(const DrainageTask& task, const Draft& draft) {
   PlannedDrainage result{.kept = {}, .plan = draft.tubes.plan(), .dropped = draft.dropped};
   std::vector<VoidShape> kept;
-  std::vector<std::uint32_t> renumbered(task.voids.size(), kOutside);
+  std::vector<std::uint32_t> renumbered(task.voids.size(), kNone);
   for (std::uint32_t i = 0; i < task.voids.size(); ++i) {
-    if (draft.network_of[i] == kOutside) continue;
+    if (draft.network_of[i] == kNone) continue;
     renumbered[i] = static_cast<std::uint32_t>(kept.size());
     result.kept.push_back(i);
     kept.push_back(task.voids[i]);

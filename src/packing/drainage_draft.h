@@ -12,6 +12,7 @@
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "core/void_shape.h"
+#include "kernels/constants.h"
 #include "packing/channel_ways.h"
 #include "packing/hole_places.h"
 #include "packing/placed_tubes.h"
@@ -48,7 +49,7 @@ struct DrainageTask {
 
 // A plan that is being made.
 struct Draft {
-  std::vector<std::uint32_t> network_of;  // by void; kOutside for those that are left out
+  std::vector<std::uint32_t> network_of;  // by void; kNone for those that are left out
   PlacedTubes tubes;
   UndrainedVoids dropped;
   std::vector<std::uint32_t> asked_for;  // voids with holes that were asked for

@@ -5,12 +5,11 @@
 #include <queue>
 #include <tuple>
 
+#include "kernels/constants.h"
 #include "packing/pools.h"
 
 namespace aerate {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The lowest first, then the shortest; the rest makes the order one of its own.
 struct ComesAfter {
@@ -33,11 +32,11 @@ class Flood {
 
   std::vector<FloodStep> run(const std::function<bool(std::size_t)>& make) {
     push_lowest_holes();
-    std::vector<FloodStep> steps(task_.voids.size(), {kInfinity, 0, kOutside, kOutside, kExistingChannel});
+    std::vector<FloodStep> steps(task_.voids.size(), {kInfinity, 0, kNone, kNone, kExistingChannel});
     while (!queue_.empty()) {
       const FloodStep next = queue_.top();
       queue_.pop();
-      if (steps[next.to].to != kOutside) continue;
+      if (steps[next.to].to != kNone) continue;
       if (next.way != kExistingChannel && !make(next.way)) continue;
       steps[next.to] = next;
       push_ways(next.to, next.height);
@@ -59,7 +58,7 @@ class Flood {
     }
     for (const auto& [network, hole] : lowest_of)
       queue_.push(
-          {sill_of_hole(*hole, task_.voids[hole->from], up_), 0, hole->from, kOutside, kExistingChannel});
+          {sill_of_hole(*hole, task_.voids[hole->from], up_), 0, hole->from, kNone, kExistingChannel});
   }
 
   void push_ways(std::uint32_t from, double height) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/constants.h"
 #include "packing/drainage_draft.h"
 
 namespace aerate {
@@ -14,7 +15,7 @@ namespace aerate {
 struct FloodStep {
   double height;           // that liquid has to reach
   double length;           // of a channel that is not there yet
-  std::uint32_t to, from;  // the void, or kOutside if no way leads to it; and that before it, or kOutside
+  std::uint32_t to, from;  // the void, or kNone if no way leads to it; and that before it, or kNone
   std::size_t way;         // of ChannelWays, or kExistingChannel
 };
 inline constexpr std::size_t kExistingChannel = std::numeric_limits<std::size_t>::max();

@@ -9,14 +9,13 @@
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
+#include "kernels/constants.h"
 #include "packing/placed_tubes.h"
 #include "packing/pools.h"
 #include "packing/tube_through.h"
 
 namespace aerate {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The longest hole, in its diameters and walls together.
 constexpr double kLongestInDiameters = 3;
@@ -79,7 +78,7 @@ double HolePlaces::showing(Vec3d place) const {
   const Vec3d up = limits_.roof.up;
   const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   const Vec3d across = cross(up, side);
-  const Vec3d back = across * (1 / length(across));
+  const Vec3d back = normalised(across);
   const Vec3d normal = clearance_.normal_near(place);
   return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
 }

@@ -6,6 +6,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/error.h"
+#include "kernels/constants.h"
 #include "packing/flood.h"
 
 namespace aerate {
@@ -19,7 +20,7 @@ std::vector<Members> members_by_network(const Draft& draft) {
   std::vector<Members> networks;
   for (std::uint32_t i = 0; i < draft.network_of.size(); ++i) {
     const std::uint32_t n = draft.network_of[i];
-    if (n == kOutside) continue;
+    if (n == kNone) continue;
     if (n >= networks.size()) networks.resize(n + 1);
     networks[n].push_back(i);
   }
@@ -44,7 +45,7 @@ std::vector<FloodStep> join_voids(DrainageTask& task, Draft& draft) {
 
 Members reached_by(const std::vector<FloodStep>& steps, const Members& members) {
   Members reached = members;
-  std::erase_if(reached, [&](std::uint32_t i) { return steps[i].to == kOutside; });
+  std::erase_if(reached, [&](std::uint32_t i) { return steps[i].to == kNone; });
   return reached;
 }
 
@@ -68,7 +69,7 @@ Draft open_network(DrainageTask& task, const Draft& draft, const Members& member
     for (std::size_t i = before; i < opened.tubes.plan().holes.size(); ++i) {
       const std::uint32_t from = opened.tubes.plan().holes[i].from;
       const bool is_below = i == before && !is_asked_for_below;
-      if (is_below ? volume < kEnoughReached * volume_of(task, members) : steps[from].to == kOutside)
+      if (is_below ? volume < kEnoughReached * volume_of(task, members) : steps[from].to == kNone)
         useless.push_back(from);
     }
     if (volume > most) {
@@ -101,7 +102,7 @@ Draft find_networks(DrainageTask& task) {
   std::stable_sort(networks.begin(), networks.end(), [&](const Members& a, const Members& b) {
     return volume_of(task, a) > volume_of(task, b);
   });
-  Draft draft{.network_of = std::vector<std::uint32_t>(task.voids.size(), kOutside),
+  Draft draft{.network_of = std::vector<std::uint32_t>(task.voids.size(), kNone),
               .tubes = task.no_tubes,
               .dropped = {},
               .asked_for = {}};
@@ -115,7 +116,7 @@ Draft find_networks(DrainageTask& task) {
 Draft open_where_asked(DrainageTask& task, Draft draft) {
   Members all;
   for (std::uint32_t i = 0; i < draft.network_of.size(); ++i) {
-    if (draft.network_of[i] != kOutside) all.push_back(i);
+    if (draft.network_of[i] != kNone) all.push_back(i);
   }
   for (const Vec3d place : task.request.escape_holes) {
     // Rather into a void beside which the hole leaves room for a channel.
@@ -151,7 +152,7 @@ Draft open_and_join(DrainageTask& task, Draft draft) {
   const std::vector<FloodStep> steps = join_voids(task, draft);
   for (std::uint32_t n = 0; n < networks.size(); ++n) {
     const auto is_unreached = [&](std::uint32_t i) {
-      return draft.network_of[i] == n && steps[i].to == kOutside;
+      return draft.network_of[i] == n && steps[i].to == kNone;
     };
     draft.tubes.remove_tubes_of(is_unreached);
     if (hole_count(draft, n) == 0) continue;

@@ -12,10 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/constants.h"
+
 namespace aerate {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSlices = 64;
 
 // Area of the part of a circle below a line at signed distance `level` from its centre.
@@ -81,14 +82,14 @@ double retained(const Pools& left, const Pools& room, const DrainagePlan& plan, 
   // Voids of one spill height along a way out are one basin.
   for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
     const std::uint32_t next = spills.towards[*at];
-    if (next != kOutside && spills.height[next] == spills.height[*at]) {
+    if (next != kNone && spills.height[next] == spills.height[*at]) {
       inflow[next] += inflow[*at];
       capacity[next] += capacity[*at];
       continue;
     }
     const double stays_here = std::min(inflow[*at], capacity[*at]);
     stays += stays_here;
-    if (next != kOutside) inflow[next] += inflow[*at] - stays_here;
+    if (next != kNone) inflow[next] += inflow[*at] - stays_here;
   }
   for (std::size_t i = 0; i < inflow.size(); ++i) {
     if (spills.height[i] == kInfinity) stays += inflow[i];
@@ -121,11 +122,11 @@ SpillHeights spill_heights(std::span<const VoidShape> voids, const DrainagePlan&
     ways[channel.to].push_back({channel.from, std::max(start, end)});
   }
   spills.height.assign(voids.size(), kInfinity);
-  spills.towards.assign(voids.size(), kOutside);
+  spills.towards.assign(voids.size(), kNone);
   using Step = std::tuple<double, std::uint32_t, std::uint32_t>;  // height, void, towards
   std::priority_queue<Step, std::vector<Step>, std::greater<>> open;
   for (const EscapeHole& hole : plan.holes)
-    open.push({sill_of_hole(hole, voids[hole.from], up), hole.from, kOutside});
+    open.push({sill_of_hole(hole, voids[hole.from], up), hole.from, kNone});
   std::vector<bool> done(voids.size(), false);
   while (!open.empty()) {
     const auto [height, at, towards] = open.top();
@@ -144,11 +145,11 @@ SpillHeights spill_heights(std::span<const VoidShape> voids, const DrainagePlan&
 
 std::vector<Pool> upright_pools(std::span<const VoidShape> voids, const DrainagePlan& plan) {
   const SpillHeights spills = spill_heights(voids, plan, plan.roof.up);
-  std::vector<std::uint32_t> root_of(voids.size(), kOutside);
+  std::vector<std::uint32_t> root_of(voids.size(), kNone);
   std::map<std::uint32_t, Pool> pool_of;
   for (const std::uint32_t i : spills.order) {
     const std::uint32_t next = spills.towards[i];
-    root_of[i] = next != kOutside && spills.height[next] == spills.height[i] ? root_of[next] : i;
+    root_of[i] = next != kNone && spills.height[next] == spills.height[i] ? root_of[next] : i;
     Pool& pool = pool_of[root_of[i]];
     pool.volume += voids[i].volume_below(plan.roof.up, spills.height[i]);
     pool.voids.push_back(i);
@@ -166,7 +167,7 @@ std::vector<std::uint32_t> branch_of(std::uint32_t root, const SpillHeights& spi
   std::vector<bool> is_in_branch(spills.towards.size(), false);
   for (const std::uint32_t i : spills.order) {
     const std::uint32_t next = spills.towards[i];
-    if (i != root && (next == kOutside || !is_in_branch[next])) continue;
+    if (i != root && (next == kNone || !is_in_branch[next])) continue;
     is_in_branch[i] = true;
     branch.push_back(i);
   }
@@ -183,7 +184,7 @@ std::uint32_t fullest_branch(std::span<const VoidShape> voids, const DrainagePla
   std::vector<bool> has_hole(voids.size(), false), is_kept(voids.size(), false);
   for (const EscapeHole& hole : plan.holes) has_hole[hole.from] = true;
   for (const std::uint32_t i : kept) is_kept[i] = true;
-  std::array<std::uint32_t, 2> worst{kOutside, kOutside};  // without a hole, and with one
+  std::array<std::uint32_t, 2> worst{kNone, kNone};  // without a hole, and with one
   std::array<double, 2> most{least, least};
   for (auto at = spills.order.rbegin(); at != spills.order.rend(); ++at) {
     const std::uint32_t i = *at, next = spills.towards[*at];
@@ -192,13 +193,13 @@ std::uint32_t fullest_branch(std::span<const VoidShape> voids, const DrainagePla
       most[kind] = full[i] / whole[i];
       worst[kind] = i;
     }
-    if (next == kOutside) continue;
+    if (next == kNone) continue;
     whole[next] += whole[i];
     full[next] += full[i];
     has_hole[next] = has_hole[next] || has_hole[i];
     is_kept[next] = is_kept[next] || is_kept[i];
   }
-  return worst[0] != kOutside ? worst[0] : worst[1];
+  return worst[0] != kNone ? worst[0] : worst[1];
 }
 
 TrappedPools trapped_pools(std::span<const VoidShape> voids, const DrainagePlan& plan) {

@@ -7,6 +7,7 @@
 
 #include "core/drainage.h"
 #include "core/void_shape.h"
+#include "kernels/constants.h"
 
 // Where liquid stays in drained voids. It is at rest, flows slowly, and leaves a void through the lowest
 // point of an opening: the spill height of a void is the least height, over all ways out, of the highest sill
@@ -15,12 +16,10 @@
 
 namespace aerate {
 
-inline constexpr std::uint32_t kOutside = 0xffffffffu;
-
 // How liquid runs out in one orientation.
 struct SpillHeights {
   std::vector<double> height;          // along `up`, by void; infinite if nothing leads out
-  std::vector<std::uint32_t> towards;  // the void that it spills into, or kOutside
+  std::vector<std::uint32_t> towards;  // the void that it spills into, or kNone
   std::vector<std::uint32_t> order;    // the voids that drain, those after their `towards`
   // By channel: the heights above which it takes liquid in at its start and at its end.
   std::vector<std::array<double, 2>> floors;
@@ -47,7 +46,7 @@ std::vector<std::uint32_t> branch_of(std::uint32_t root, const SpillHeights& spi
 
 // The root of the branch of which the largest share stays full in print orientation, more than `least`, where
 // the spill heights are `spills`; one with an escape hole only if there is no other, and one that holds any
-// of the voids `kept` never. kOutside if there is none.
+// of the voids `kept` never. kNone if there is none.
 std::uint32_t fullest_branch(std::span<const VoidShape> voids, const DrainagePlan& plan,
                              const SpillHeights& spills, std::span<const std::uint32_t> kept, double least);
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/disjoint_sets.h"
+#include "kernels/constants.h"
 #include "packing/flood.h"
 
 namespace aerate {
@@ -27,7 +28,7 @@ Draft leave_out_branches(const DrainageTask& task, Draft draft) {
     const DrainagePlan& plan = draft.tubes.plan();
     const SpillHeights spills = spill_heights(task.voids, plan, task.up());
     const std::uint32_t chosen = fullest_branch(task.voids, plan, spills, draft.asked_for, kPoolsAimedAt);
-    if (chosen == kOutside) return draft;
+    if (chosen == kNone) return draft;
     leave_out(task, draft, branch_of(chosen, spills), &UndrainedVoids::full);
   }
 }
@@ -40,7 +41,7 @@ Draft open_parts(DrainageTask& task, Draft draft) {
   std::map<std::size_t, std::uint32_t> number_of_root;
   std::vector<Members> parts;
   for (std::uint32_t i = 0; i < task.voids.size(); ++i) {
-    if (draft.network_of[i] == kOutside) continue;
+    if (draft.network_of[i] == kNone) continue;
     const auto number = static_cast<std::uint32_t>(parts.size());
     const auto [place, is_new] = number_of_root.try_emplace(sets.root(i), number);
     if (is_new) parts.emplace_back();
@@ -82,8 +83,7 @@ Draft add_channels_for_pools(DrainageTask& task, Draft draft) {
     if (upright.height[i] == std::numeric_limits<double>::infinity()) continue;
     const double left = task.voids[i].volume_below(task.up(), upright.height[i]);
     if (left < kPoolWorthWay * task.voids[i].volume()) continue;
-    for (std::uint32_t at = i; at != kOutside && steps[at].to != kOutside && !is_on_way[at];
-         at = steps[at].from)
+    for (std::uint32_t at = i; at != kNone && steps[at].to != kNone && !is_on_way[at]; at = steps[at].from)
       is_on_way[at] = true;
   }
   Draft with_more = draft;

@@ -9,8 +9,8 @@
 #include <tbb/parallel_sort.h>
 
 #include "kernels/constants.h"
+#include "kernels/packed_shape.h"
 #include "kernels/roof_distance.h"
-#include "kernels/void_shape.h"
 
 namespace aerate {
 namespace {
@@ -77,7 +77,7 @@ struct Classes {
 
 Classes classify(std::span<const Sphere> spheres, double reach) {
   std::map<int, std::vector<std::uint32_t>> members;
-  Vec3d origin{kernels::kInfinity, kernels::kInfinity, kernels::kInfinity};
+  Vec3d origin{kInfinity, kInfinity, kInfinity};
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     int exponent = 0;
     // Spheres smaller than the reach share a class: their cells would be no smaller.

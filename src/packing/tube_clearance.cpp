@@ -6,13 +6,12 @@
 #include <tuple>
 #include <utility>
 
+#include "kernels/constants.h"
 #include "kernels/nearest_point.h"
 #include "packing/sphere_pairs.h"
 
 namespace aerate {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A point this near to the surface is on it, mm: the facet there is found at once.
 constexpr double kOnSurface = 1e-6;
@@ -108,7 +107,7 @@ Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
 
 Vec3d TubeClearance::normal_near(Vec3d point) const {
   kernels::NearestFacet nearest = bvh_.nearest(point, kOnSurface * kOnSurface);
-  if (nearest.facet == kernels::kNone) nearest = bvh_.nearest(point, kInfinity);
+  if (nearest.facet == kNone) nearest = bvh_.nearest(point, kInfinity);
   const kernels::Facet& facet = bvh_.facets[nearest.facet];
   const Vec3d a = to_double(facet.a);
   const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);

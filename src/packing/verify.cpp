@@ -14,8 +14,6 @@
 namespace aerate {
 namespace {
 
-using kernels::kInfinity;
-
 // A model's own fp32 coordinates are not better than this share of its size.
 constexpr double kRoundingShare = 1e-6;
 

@@ -8,9 +8,9 @@
 #include "core/overhang.h"
 #include "core/upright.h"
 #include "printing/carve.h"
+#include "tests/support/closed_shells.h"
 #include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
-#include "tests/support/shells.h"
 
 // Ceilings of voids, measured on their triangles.
 namespace aerate {

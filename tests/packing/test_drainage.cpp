@@ -140,7 +140,7 @@ TEST(Pools, OfTwoBallsAndALevelHole) {
   EXPECT_NEAR(spills.height[0], 9, 1e-9);  // the hole's lower side
   EXPECT_NEAR(spills.height[1], 9, 1e-9);
   EXPECT_EQ(spills.towards[1], 0U);
-  EXPECT_EQ(spills.towards[0], kOutside);
+  EXPECT_EQ(spills.towards[0], kNone);
 
   const TrappedPools pools = trapped_pools(voids, plan);
   const double tube = std::numbers::pi * length(plan.channels[0].tube.end - plan.channels[0].tube.start);

@@ -8,9 +8,9 @@
 #include "core/error.h"
 #include "printing/ball_template.h"
 #include "printing/carve.h"
+#include "tests/support/closed_shells.h"
 #include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
-#include "tests/support/shells.h"
 
 namespace aerate {
 namespace {

@@ -16,9 +16,9 @@
 #include "printing/cut_surface.h"
 #include "printing/open_ball.h"
 #include "tests/support/caught.h"
+#include "tests/support/closed_shells.h"
 #include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
-#include "tests/support/shells.h"
 
 namespace aerate {
 namespace {

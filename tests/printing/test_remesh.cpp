@@ -17,9 +17,9 @@
 #include "printing/remesh.h"
 #include "printing/shells.h"
 #include "tests/support/caught.h"
+#include "tests/support/closed_shells.h"
 #include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
-#include "tests/support/shells.h"
 
 namespace aerate {
 namespace {

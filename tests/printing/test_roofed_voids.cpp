@@ -9,9 +9,9 @@
 #include "printing/carve.h"
 #include "printing/cut_ball.h"
 #include "tests/support/clearance.h"
+#include "tests/support/closed_shells.h"
 #include "tests/support/packing_of.h"
 #include "tests/support/shapes.h"
-#include "tests/support/shells.h"
 
 // Voids with roofs as they are carved: closed, inside their planned shape, near to it, flat on top.
 namespace aerate {
