@@ -108,7 +108,7 @@ std::vector<bool> triangles_to_turn(const Mesh& mesh, const Neighbours& neighbou
       const std::uint32_t triangle = patch[next];
       for (std::uint32_t corner = 0; corner < 3; ++corner) {
         const Neighbours::Side& side = neighbours.across(triangle, corner);
-        if (side.triangle == Neighbours::kNone || reached[side.triangle]) continue;
+        if (side.triangle == kNone || reached[side.triangle]) continue;
         reached[side.triangle] = true;
         turned[side.triangle] = side.agrees == turned[triangle];
         turned_count += turned[side.triangle] ? 1u : 0u;
