@@ -45,7 +45,9 @@ class PeakMemory {
 void print_sphere(double radius, double tolerance) {
   const Sphere sphere{{51.7, 48.2, 33.3}, radius, SphereKind::lattice};
   Monitor monitor;
-  const Mesh mesh = carve_keeping_surface({}, {{sphere}}, {tolerance}, monitor).mesh;
+  Packing packing;
+  packing.spheres = {sphere};
+  const Mesh mesh = carve_keeping_surface({}, packing, {tolerance}, monitor).mesh;
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   for (const Triangle& t : mesh.triangles) {
     const kernels::Facet facet{mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};

@@ -366,7 +366,7 @@ TEST(BadInput, GivenSpheresThatAreNoPackingOfTheModel) {
   refused("1e308,10,10,3,adaptive\n", {"sphere 1", "outside"});
   refused("10,10,10,1e308,adaptive\n", {"sphere 1", "wall of"});
   refused("", {"no spheres"});
-  file_refused("list.csv", "", kUnreadable, {"list.csv", "line 1", "x,y,z,radius,kind"});
+  file_refused("list.csv", "", kUnreadable, {"list.csv", "the file is empty"});
   file_refused("list.csv", "x,y,z,diameter\n10,10,10,3\n", kUnreadable, {"list.csv", "line 1", "header"});
   file_refused("list.csv", "10,10,10,3,adaptive\n", kUnreadable, {"list.csv", "line 1", "header"});
   file_refused("list.json", "{\"spheres\": [[10, 10, 10, 3]]}", kUnreadable, {"list.json", "schema"});

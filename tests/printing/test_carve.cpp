@@ -67,7 +67,7 @@ TEST(Carve, VoidsLieInsideTheirSphereWithinTheTolerance) {
 TEST(Carve, TakesAtMostTwiceTheTrianglesOfEquilateralOnes) {
   constexpr double kTolerance = 0.05;
   for (const double radius : {1.0, 3.0, 9.5}) {
-    const Solid solid = carve({{ball({40, 50, 60}, radius)}}, kTolerance);
+    const Solid solid = carve(test::packing_of({ball({40, 50, 60}, radius)}), kTolerance);
     EXPECT_LE(static_cast<double>(solid.of(PartKind::void_surface)[0].triangle_count),
               2 * kIdealTriangles * radius / kTolerance)
         << "radius " << radius;
@@ -124,9 +124,9 @@ TEST(Carve, SameBytesForAnyThreadCount) {
 
 TEST(Carve, SaysWhereSinglePrecisionIsTooCoarse) {
   Monitor monitor;
-  EXPECT_THROW(carve({{ball({1e6, 0, 0}, 1)}}, 0.05), FailureError);
-  EXPECT_THROW(carve({{ball({100, 0, 0}, 1e-5)}}, 0.05), FailureError);
-  EXPECT_THROW(carve({{ball({100, 0, 0}, 1)}}, 1e-5), FailureError);
+  EXPECT_THROW(carve(test::packing_of({ball({1e6, 0, 0}, 1)}), 0.05), FailureError);
+  EXPECT_THROW(carve(test::packing_of({ball({100, 0, 0}, 1e-5)}), 0.05), FailureError);
+  EXPECT_THROW(carve(test::packing_of({ball({100, 0, 0}, 1)}), 1e-5), FailureError);
 }
 
 TEST(Carve, RefusesAVoidOfMillionsOfTriangles) {
