@@ -108,6 +108,16 @@ std::size_t VoidTemplate::triangle_count() const {
                                                          : ring - 2);
 }
 
+void VoidTemplate::place(const Sphere& sphere, const Roof& roof, std::size_t first_vertex,
+                         std::size_t first_triangle, Mesh& mesh) const {
+  const Placement own(first_vertex, first_triangle, mesh);
+  if (ball != nullptr) {
+    place_ball(*ball, sphere, own);
+  } else {
+    place_cut_ball(*this, sphere, roof, own);
+  }
+}
+
 struct VoidTemplates::Cut {
   std::optional<CutBall> made;
 };
@@ -173,12 +183,8 @@ Solid assemble(Mesh outer, const Packing& packing, std::span<const VoidTemplate>
   solid.mesh.triangles.resize(triangle_count);
   const std::span<const SolidPart> voids = solid.of(PartKind::void_surface);
   tbb::parallel_for(std::size_t{0}, templates.size(), [&](std::size_t i) {
-    const Placement place(first_vertices[i], voids[i].first_triangle, solid.mesh);
-    if (templates[i].ball != nullptr) {
-      place_ball(*templates[i].ball, packing.spheres[i], place);
-    } else {
-      place_cut_ball(templates[i], packing.spheres[i], packing.limits.roof, place);
-    }
+    templates[i].place(packing.spheres[i], packing.limits.roof, first_vertices[i], voids[i].first_triangle,
+                       solid.mesh);
   });
   return solid;
 }

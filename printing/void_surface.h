@@ -23,6 +23,10 @@ struct VoidTemplate {
 
   std::size_t vertex_count() const;
   std::size_t triangle_count() const;
+
+  // Writes the void's surface, turned inside out, into a mesh that has room for it from these on.
+  void place(const Sphere& sphere, const Roof& roof, std::size_t first_vertex, std::size_t first_triangle,
+             Mesh& mesh) const;
 };
 
 // Templates for the voids of a packing, each made when it is first asked for.

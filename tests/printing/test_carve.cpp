@@ -130,7 +130,7 @@ TEST(Carve, SaysWhereSinglePrecisionIsTooCoarse) {
 }
 
 TEST(Carve, RefusesAVoidOfMillionsOfTriangles) {
-  EXPECT_THROW(estimate_void_triangles({{ball({0, 0, 0}, 100)}}, {1e-4}), FailureError);
+  EXPECT_THROW(estimate_void_triangles(test::packing_of({ball({0, 0, 0}, 100)}), {1e-4}), FailureError);
 }
 
 TEST(Carve, StopsWhenInterrupted) {
@@ -138,7 +138,8 @@ TEST(Carve, StopsWhenInterrupted) {
    public:
     void check_interrupted() override { throw InterruptedError(); }
   } monitor;
-  EXPECT_THROW(carve_keeping_surface({}, {{ball({0, 0, 0}, 1)}}, {}, monitor), InterruptedError);
+  EXPECT_THROW(carve_keeping_surface({}, test::packing_of({ball({0, 0, 0}, 1)}), {}, monitor),
+               InterruptedError);
 }
 
 TEST(Carve, EstimateIsExact) {
