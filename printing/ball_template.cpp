@@ -158,6 +158,7 @@ void BallLadder::prepare(std::span<const Sphere> balls, double tolerance) {
     std::erase_if(searches, is_over);
     if (searches.empty()) return;
     std::vector<std::size_t> wanted;
+    wanted.reserve(searches.size());
     for (const Search& search : searches) wanted.push_back(search.level);
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());

@@ -85,9 +85,9 @@ std::vector<ObjectPart> read_parts(const fs::path& package) {
   return parts;
 }
 
-std::string other_kind(const pugi::xml_node& part) {
+std::optional<std::string> other_kind(const pugi::xml_node& part) {
   const std::string type = part.attribute("subtype").as_string("normal_part");
-  return type == "normal_part" ? "" : type;
+  return type == "normal_part" ? std::nullopt : std::optional(type);
 }
 
 }  // namespace

@@ -56,10 +56,10 @@ std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
   return parts;
 }
 
-std::string other_kind(const pugi::xml_node& volume) {
+std::optional<std::string> other_kind(const pugi::xml_node& volume) {
   const std::string type = metadata_of(volume, "volume_type");
-  if (type == "ModelPart") return {};
-  return type.empty() && metadata_of(volume, "modifier") == "1" ? "modifier" : type;
+  if (type.empty() && metadata_of(volume, "modifier") == "1") return "modifier";
+  return type.empty() || type == "ModelPart" ? std::nullopt : std::optional(type);
 }
 
 }  // namespace

@@ -40,10 +40,15 @@ void require_planned_parts(const Mesh& read_back, const Expected& expected) {
       made(PartKind::hole) != holes || made(PartKind::outer) != 1)
     fail_check("{} voids, {} channels and {} holes were planned; {}, {} and {} made", voids, channels, holes,
                made(PartKind::void_surface), made(PartKind::channel), made(PartKind::hole));
+  if (expected.drainage == nullptr && made(PartKind::remnant) > 0)
+    fail_check("the surface was cut although no hole was planned");
   std::size_t next = 0;
+  PartKind last = PartKind::outer;
   for (const SolidPart& part : expected.solid.parts) {
-    if (part.first_triangle != next) fail_check("triangle {} is of no part, or of two", next);
+    if (part.first_triangle != next || part.kind < last)
+      fail_check("triangle {} is of no part, or of two", next);
     next = part.end();
+    last = part.kind;
   }
   if (next != read_back.triangles.size()) fail_check("triangle {} is of no part", next);
 }

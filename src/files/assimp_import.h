@@ -12,7 +12,7 @@ namespace aerate {
 // triangles.
 inline constexpr std::size_t kMostBytes = std::size_t{1} << 31;
 inline constexpr int kMaxNodeDepth = 256;
-inline constexpr std::size_t kMostInstancedTriangles = std::size_t{1} << 27;
+inline constexpr std::size_t kMostInstancedTriangles = std::size_t{1} << 25;
 
 // Reads a file through assimp, which is lenient: it reads past missing data with zeros, leaves out what it
 // cannot use and trusts the counts of a header with memory. So the room of a format looks through the whole

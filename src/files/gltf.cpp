@@ -21,8 +21,11 @@ constexpr const char* kMagic = "glTF";
 constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 
+// glTF itself needs a dozen; what is deeper is no model, and would be taken apart by recursion.
+constexpr int kDeepest = 64;
+
 // Primitives share accessors, and each has its own copy once it is read.
-constexpr std::size_t kMostValues = std::size_t{1} << 28;
+constexpr std::size_t kMostValues = std::size_t{1} << 27;
 
 enum ComponentType { uint8 = 5121, uint16 = 5123, uint32 = 5125, float32 = 5126 };
 
@@ -64,7 +67,7 @@ class GltfCheck {
       copy_meshes();
       copy_nodes();
     } catch (const json::exception& error) {
-      fail("not as glTF 2.0 has it: {}", error.what());
+      fail("not as glTF 2.0 has it: {:.200}", error.what());
     }
     return plain_file();
   }
@@ -75,7 +78,10 @@ class GltfCheck {
   void parse() {
     std::string_view text = file_.text();
     if (text.starts_with(kMagic)) text = open_container();
-    document_ = json::parse(text);
+    document_ = json::parse(text, [this](int depth, json::parse_event_t, const json&) {
+      if (depth > kDeepest) fail("nested more than {} deep", kDeepest);
+      return true;
+    });
     const std::string version = document_.at("asset").at("version").get<std::string>();
     if (!version.starts_with("2.")) fail("glTF of version {:.20}, not 2", version);
     for (const json& extension : list_in(document_, "extensionsRequired")) {

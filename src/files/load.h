@@ -24,8 +24,8 @@ struct VolumeList {
   const char* entry;
   const char* node;
   // What a volume is that is not part of the model, though in the package it looks like a body of it (a
-  // modifier, a negative volume, supports painted as volumes); empty for a part.
-  std::string (*other_kind)(const pugi::xml_node& volume);
+  // modifier, a negative volume, supports painted as volumes); nothing for a part.
+  std::optional<std::string> (*other_kind)(const pugi::xml_node& volume);
 };
 
 struct LoadOptions {

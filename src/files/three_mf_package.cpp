@@ -161,12 +161,12 @@ void require_model_parts_only(const InputFile& file, const std::vector<VolumeLis
     const pugi::xml_document document = document_in(archive.get(), list.entry, file);
     for (const pugi::xml_node object : document.child("config").children("object")) {
       for (const pugi::xml_node volume : object.children(list.node)) {
-        const std::string kind = list.other_kind(volume);
-        if (kind.empty()) continue;
+        const auto kind = list.other_kind(volume);
+        if (!kind) continue;
         throw InputError(
             fmt::format(
                 "{}: a slicer's project with a volume that is not part of the model ({} '{}')", file.name,
-                kind,
+                *kind,
                 volume.find_child_by_attribute("metadata", "key", "name").attribute("value").as_string()),
             "take such volumes out, or export the model alone (in PrusaSlicer: File, Export, Export Plate as "
             "STL)");

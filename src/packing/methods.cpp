@@ -7,19 +7,15 @@
 #include "packing/hexagonal.h"
 
 namespace aerate {
-namespace {
-
-const PackingMethod kMethods[] = {adaptive_method(), hexagonal_method()};
-
-}  // namespace
 
 std::span<const PackingMethod> packing_methods() {
-  return kMethods;
+  static const PackingMethod methods[] = {adaptive_method(), hexagonal_method()};
+  return methods;
 }
 
 const PackingMethod& packing_method(std::string_view name) {
-  const auto found = std::ranges::find(kMethods, name, &PackingMethod::name);
-  if (found == std::end(kMethods)) throw UsageError("there is no packing " + std::string(name));
+  const auto found = std::ranges::find(packing_methods(), name, &PackingMethod::name);
+  if (found == packing_methods().end()) throw UsageError("there is no packing " + std::string(name));
   return *found;
 }
 

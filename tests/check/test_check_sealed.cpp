@@ -146,6 +146,12 @@ TEST_F(CheckSealed, FindsAChangedOuterSurface) {
   expect_found("is not the one of the model");
 }
 
+TEST_F(CheckSealed, FindsACutThatNoHoleExplains) {
+  solid_.parts.front().triangle_count -= 2;
+  solid_.parts.insert(solid_.parts.begin() + 1, {PartKind::remnant, 10, 2});
+  expect_found("although no hole was planned");
+}
+
 TEST_F(CheckSealed, FindsAnOpenVoid) {
   solid_.mesh.triangles.pop_back();
   solid_.parts.back().triangle_count -= 1;

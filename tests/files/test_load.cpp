@@ -532,7 +532,7 @@ TEST_F(Load, ProjectsOfSlicers) {
   // In the package these look like bodies of the model.
   for (const std::string& project :
        {prusa(type + R"(ParameterModifier"/>)"), prusa(type + R"(NegativeVolume"/>)"),
-        prusa(R"(<metadata type="volume" key="modifier" value="1"/>)"), orca("modifier_part"),
+        prusa(R"(<metadata type="volume" key="modifier" value="1"/>)"), orca("modifier_part"), orca(""),
         orca("support_blocker")}) {
     const std::string message = input_error("project.3mf", project);
     EXPECT_TRUE(contains(message, "a volume that is not part of the model")) << message;

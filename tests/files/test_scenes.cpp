@@ -57,6 +57,16 @@ TEST_F(Scenes, PartsStandWhereTheirNodesPutThemRightSideOut) {
   }
 }
 
+TEST_F(Scenes, NestingIsBoundedAndNoMessageIsLong) {
+  constexpr std::size_t kDeep = 200'000;
+  const std::string nested = std::string(kDeep, '[') + std::string(kDeep, ']');
+  for (const std::string key : {"scene", "extensionsRequired"}) {
+    const std::string text = R"({"asset":{"version":"2.0"},")" + key + "\":" + nested + "}";
+    EXPECT_TRUE(contains(refusal("deep.gltf", text), "nested more than 64 deep")) << key;
+  }
+  EXPECT_LT(refusal("long.gltf", "{\"" + std::string(1'000'000, 'x') + "\n\":1}").size(), 1000U);
+}
+
 TEST_F(Scenes, GltfIsInMetresAnd3dsInAnyUnit) {
   const std::string glb = scene("scene.glb");
   EXPECT_TRUE(contains(
