@@ -1,6 +1,7 @@
 #include "files/formats.h"
 
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -28,6 +29,7 @@ std::string alternatives(const std::vector<std::string>& words) {
 
 std::string names_that_are_read() {
   std::vector<std::string> names;
+  names.reserve(std::size(kMeshFormats));
   for (const MeshFormat* format : kMeshFormats) names.emplace_back(format->name);
   return alternatives(names);
 }

@@ -267,7 +267,10 @@ class GltfCheck {
     append(data_.size());
     append(kBinaryChunk);
     bytes += data_;
-    InputFile plain{file_.name, std::make_unique_for_overwrite<char[]>(bytes.size()), bytes.size()};
+    InputFile plain;
+    plain.name = file_.name;
+    plain.size = bytes.size();
+    plain.data = std::make_unique_for_overwrite<char[]>(bytes.size());
     std::copy(bytes.begin(), bytes.end(), plain.data.get());
     return plain;
   }
