@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <utility>
 
 #include "files/output_file.h"
@@ -64,7 +65,7 @@ ChildCommand command_for(const fs::path& program, const SliceJob& job) {
   ChildCommand command{{program}, {}, job.scratch};
   std::size_t number = 0;
   for (const fs::path& file : job.settings.files) {
-    const fs::path copy = job.scratch / ("settings-" + std::to_string(number++) + ".ini");
+    const fs::path copy = job.scratch / fmt::format("settings-{}.ini", number++);
     command.add({"--load", without_post_processing(file, copy)});
   }
   if (job.keep_place) command.add({"--dont-arrange"});

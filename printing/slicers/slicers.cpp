@@ -54,15 +54,6 @@ std::vector<std::string> of_slicers(
   return all;
 }
 
-std::string listed(const std::vector<std::string>& texts, const std::string& last) {
-  std::string list;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (i > 0) list += i + 1 < texts.size() ? ", " : " " + last + " ";
-    list += texts[i];
-  }
-  return list;
-}
-
 Slicer find_slicer(const SlicerProfile& profile, const fs::path& path) {
   if (!path.empty()) {
     if (!is_program(path))
@@ -105,7 +96,7 @@ GcodeFigures slice(const Slicer& slicer, const SliceJob& job, Monitor& monitor) 
   command.environment.emplace_back(kSlicedByVariable, "1");
   const ChildOutcome outcome = run_child(command, monitor);
   if (outcome.exit_code != 0)
-    fail(slicer, job, "failed with status " + std::to_string(outcome.exit_code), outcome.printed);
+    fail(slicer, job, fmt::format("failed with status {}", outcome.exit_code), outcome.printed);
 
   GcodeFigures known;
   if (slicer.profile->collect != nullptr) known = slicer.profile->collect(job, outcome.printed);

@@ -90,9 +90,6 @@ std::vector<VolumeList> volume_lists();
 std::vector<std::string> of_slicers(
     const std::function<std::vector<std::string>(const SlicerProfile&)>& texts);
 
-// "a, b or c"
-std::string listed(const std::vector<std::string>& texts, const std::string& last);
-
 // A slicer's command line program.
 struct Slicer {
   const SlicerProfile* profile = nullptr;

@@ -16,14 +16,6 @@ namespace {
 // Triangles are cut that are a thousandth of a millimetre beyond a hole's prism.
 constexpr double kCutMargin = 2e-3;
 
-double rounding_of(const Mesh& mesh) {
-  const Box3f box = bounding_box(mesh);
-  double largest = 1;
-  for (const Vec3d p : {to_double(box.lower), to_double(box.upper)})
-    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  return kRoundingShare * largest;
-}
-
 // The model's triangles that are not in the outer part, ascending: all others are, in their order.
 std::vector<std::uint32_t> find_cut(const Mesh& read_back, const Mesh& model, std::size_t kept_count,
                                     Monitor& monitor) {
@@ -56,7 +48,7 @@ void require_remnants_on_surface(const Mesh& read_back, const Expected& expected
       for (const std::uint32_t v : t) corners.push_back(to_double(read_back.positions[v]));
   double farthest = 0;
   for (const double distance : expected.surface.distances(corners)) farthest = std::max(farthest, distance);
-  if (farthest > rounding_of(expected.model))
+  if (farthest > kRoundingShare * std::max(1.0, largest_coordinate(expected.model)))
     fail_check("the outer surface beside a hole is {:.3g} mm from the model's", farthest);
 }
 

@@ -16,6 +16,7 @@
 #include "cli/run_reported.h"
 #include "cli/void_options.h"
 #include "core/error.h"
+#include "core/listed.h"
 #include "files/formats.h"
 #include "pipeline/hollow.h"
 #include "printing/materials.h"

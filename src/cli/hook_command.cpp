@@ -13,6 +13,7 @@
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
 #include "core/error.h"
+#include "core/listed.h"
 #include "pipeline/hook.h"
 
 namespace aerate::cli {

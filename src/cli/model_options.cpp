@@ -9,6 +9,7 @@
 
 #include "cli/numbers.h"
 #include "core/error.h"
+#include "core/listed.h"
 #include "files/formats.h"
 #include "packing/device_choice.h"
 #include "packing/methods.h"
@@ -27,10 +28,10 @@ const std::map<std::string, LengthUnit>& units() {
 
 // The packings that --max-voids and --target-density can stop.
 std::string stoppable_packings() {
-  std::vector<std::string_view> names;
+  std::vector<std::string> names;
   for (const PackingMethod& method : packing_methods())
-    if (!method.on_lattice) names.push_back(method.name);
-  return fmt::format("{} packing", fmt::join(names, " or "));
+    if (!method.on_lattice) names.emplace_back(method.name);
+  return listed(names, "or") + " packing";
 }
 
 std::string capitalised(std::string text) {
@@ -79,9 +80,7 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
     methods.emplace_back(method.name);
     summaries.push_back(fmt::format("{} ({})", method.name, method.summary));
   }
-  command
-      .add_option("--packing", packing_,
-                  fmt::format("How spheres are packed: {}", fmt::join(summaries, " or ")))
+  command.add_option("--packing", packing_, "How spheres are packed: " + listed(summaries, "or"))
       ->check(CLI::IsMember(methods))
       ->type_name("METHOD")
       ->capture_default_str();

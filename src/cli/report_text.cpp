@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "cli/reports.h"
+#include "core/listed.h"
 #include "pipeline/memory.h"
 #include "printing/slicers/slicers.h"
 
@@ -27,7 +28,7 @@ class Lines {
 
 // 1234567 -> "1,234,567"
 std::string grouped(std::size_t number) {
-  std::string digits = std::to_string(number);
+  std::string digits = fmt::format("{}", number);
   for (std::ptrdiff_t at = std::ssize(digits) - 3; at > 0; at -= 3)
     digits.insert(static_cast<std::size_t>(at), 1, ',');
   return digits;

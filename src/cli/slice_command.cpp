@@ -9,6 +9,7 @@
 #include "cli/form_options.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
+#include "core/listed.h"
 #include "pipeline/slice_model.h"
 
 namespace aerate::cli {

@@ -1,5 +1,7 @@
 #include "core/mesh.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <unordered_map>
 
@@ -55,6 +57,14 @@ VolumeMoments volume_moments(const Mesh& mesh, std::span<const Triangle> triangl
   moments.volume = volume_times_6 / 6.0;
   moments.first_moment = moment_times_24 * (1.0 / 24.0) + origin * moments.volume;
   return moments;
+}
+
+double largest_coordinate(const Mesh& mesh) {
+  const Box3f box = bounding_box(mesh);
+  double largest = 0;
+  for (const Vec3d p : {to_double(box.lower), to_double(box.upper)})
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return largest;
 }
 
 double signed_volume(const Mesh& mesh) {

@@ -32,6 +32,9 @@ Mesh submesh(const Mesh& mesh, std::span<const Triangle> triangles);
 // Smallest box around the positions that triangles use; empty (lower > upper) for a mesh without triangles.
 Box3f bounding_box(const Mesh& mesh);
 
+// Of all corners' coordinates the largest without sign, mm: what fp32 resolves by.
+double largest_coordinate(const Mesh& mesh);
+
 // Signed volume in mm3 (divergence theorem, fp64, relative to the box centre): each triangle's contribution
 // is summed in index order, so the result does not depend on threads. Positive for outward orientation.
 double signed_volume(const Mesh& mesh);

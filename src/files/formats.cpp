@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "files/own_file.h"
 #include "files/text_scan.h"
 
@@ -19,19 +20,13 @@ const MeshFormat* format_of(const std::string& ending) {
   return nullptr;
 }
 
-// "a, b or c"
-std::string alternatives(const std::vector<std::string>& words) {
-  const auto last = words.end() - 1;
-  return fmt::format("{} or {}", fmt::join(words.begin(), last, ", "), *last);
-}
-
 }  // namespace
 
 std::string names_that_are_read() {
   std::vector<std::string> names;
   names.reserve(std::size(kMeshFormats));
   for (const MeshFormat* format : kMeshFormats) names.emplace_back(format->name);
-  return alternatives(names);
+  return listed(names, "or");
 }
 
 std::string endings_that_are_written() {
@@ -39,7 +34,7 @@ std::string endings_that_are_written() {
   for (const MeshFormat* format : kMeshFormats) {
     if (format->write != nullptr) endings.emplace_back(format->ending);
   }
-  return alternatives(endings);
+  return listed(endings, "or");
 }
 
 bool is_a_models_name(const std::filesystem::path& path) {

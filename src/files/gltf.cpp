@@ -267,12 +267,7 @@ class GltfCheck {
     append(data_.size());
     append(kBinaryChunk);
     bytes += data_;
-    InputFile plain;
-    plain.name = file_.name;
-    plain.size = bytes.size();
-    plain.data = std::make_unique_for_overwrite<char[]>(bytes.size());
-    std::copy(bytes.begin(), bytes.end(), plain.data.get());
-    return plain;
+    return file_in_memory(file_.name, bytes);
   }
 
   // Empty where there is none.

@@ -1,5 +1,6 @@
 #include "files/input_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <system_error>
@@ -18,6 +19,15 @@ void check_readable(const std::filesystem::path& path) {
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw InputError(fmt::format("{}: {}", name, error.message()));
   if (size == 0) throw InputError(fmt::format("{}: the file is empty", name));
+}
+
+InputFile file_in_memory(std::string name, std::string_view bytes) {
+  InputFile file;
+  file.name = std::move(name);
+  file.data = std::make_unique_for_overwrite<char[]>(bytes.size());
+  file.size = bytes.size();
+  std::copy(bytes.begin(), bytes.end(), file.data.get());
+  return file;
 }
 
 InputFile read_file(const std::filesystem::path& path) {

@@ -21,6 +21,9 @@ struct InputFile {
   std::string_view text() const { return {data.get(), size}; }
 };
 
+// Bytes that were made here, under the name of the file that they stand for.
+InputFile file_in_memory(std::string name, std::string_view bytes);
+
 // Throws InputError if the file is missing, not a regular file, or empty.
 void check_readable(const std::filesystem::path& path);
 

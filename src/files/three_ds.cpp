@@ -38,10 +38,7 @@ class ThreeDsCheck {
     walk(file_.text(), [&](std::uint16_t chunk, std::string_view content) {
       if (chunk == whole_file) read_scenes(content);
     });
-    const std::string bytes = make_chunk(whole_file, make_chunk(scene, objects_));
-    InputFile plain{file_.name, std::make_unique_for_overwrite<char[]>(bytes.size()), bytes.size()};
-    std::copy(bytes.begin(), bytes.end(), plain.data.get());
-    return plain;
+    return file_in_memory(file_.name, make_chunk(whole_file, make_chunk(scene, objects_)));
   }
 
   std::size_t face_count() const { return face_count_; }

@@ -74,10 +74,7 @@ Packing with_only(const Packing& packing, std::span<const std::uint32_t> kept) {
 // Throws FailureError unless fp32 can hold the sides of such a tube anywhere in the model.
 void require_resolvable(const Mesh& model, double radius, double tolerance, const char* what) {
   constexpr double kStepsPerSide = 8;
-  const Box3f box = bounding_box(model);
-  double largest = 0;
-  for (const Vec3d p : {to_double(box.lower), to_double(box.upper)})
-    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double largest = largest_coordinate(model);
   const double step = largest * static_cast<double>(std::numeric_limits<float>::epsilon());
   const auto sides = static_cast<double>(sides_of({{}, {}, radius}, tolerance));
   if (2 * radius * std::sin(std::numbers::pi / sides) >= kStepsPerSide * step) return;
@@ -177,16 +174,15 @@ void require_room_for_tubes(const DrainageRequest& request, const PackingLimits&
   require(request.hole_radius, "an escape hole", "--hole-diameter");
 }
 
-CarvedModel carve_within(const PreparedModel& model, const SurfaceIndex& surface, DrainedPacking& drained,
-                         double tolerance, std::optional<std::size_t> max_triangles, Monitor& monitor) {
-  const Packing& packing = drained.packing;
-  const DrainagePlan& plan = drained.voids->plan;
+CarvedModel carve_within(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                         const DrainagePlan& plan, OuterWithHoles outer, double tolerance,
+                         std::optional<std::size_t> max_triangles, Monitor& monitor) {
   const auto carve_at = [&](double at) {
     return carve_drained(model.mesh, surface, packing, plan, {.tolerance = at}, monitor);
   };
   // Cut for another tolerance, its holes have other sides.
-  const bool fits = drained.outer.tolerance == tolerance;
-  Solid solid = fits ? carve_drained(std::move(drained.outer), packing, plan, monitor) : carve_at(tolerance);
+  const bool fits = outer.tolerance == tolerance;
+  Solid solid = fits ? carve_drained(std::move(outer), packing, plan, monitor) : carve_at(tolerance);
   for (int i = 0; i < kMostTries; ++i) {
     if (!max_triangles || solid.mesh.triangles.size() <= *max_triangles) return {std::move(solid), tolerance};
     tolerance *= kLooser;

@@ -47,7 +47,8 @@ struct CarvedModel {
 // Carves voids that drain; their holes were cut at a tolerance that may be this one. Where openings take more
 // triangles than were estimated, the tolerance is loosened until they are at most `max_triangles`. Throws as
 // carve_drained, and UsageError if there are more at any tolerance.
-CarvedModel carve_within(const PreparedModel& model, const SurfaceIndex& surface, DrainedPacking& drained,
-                         double tolerance, std::optional<std::size_t> max_triangles, Monitor& monitor);
+CarvedModel carve_within(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                         const DrainagePlan& plan, OuterWithHoles outer, double tolerance,
+                         std::optional<std::size_t> max_triangles, Monitor& monitor);
 
 }  // namespace aerate

@@ -48,14 +48,15 @@ Solid carve_sealed(const PreparedModel& model, const Packing& packing, double to
   return carve_keeping_surface(model.mesh, packing, options, monitor);
 }
 
-CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, DrainedPacking& drained,
+// `outer` has the holes of voids that drain.
+CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                  const std::optional<DrainedVoids>& drained, OuterWithHoles outer,
                   const HollowOptions& options, Monitor& monitor) {
-  const Packing& packing = drained.packing;
   const double tolerance = tolerance_within(packing, model.mesh.triangles.size(), options, monitor);
   monitor.stage("carve");
-  CarvedModel carved = drained.voids
-                           ? carve_within(model, surface, drained, tolerance, options.max_triangles, monitor)
-                           : CarvedModel{carve_sealed(model, packing, tolerance, monitor), tolerance};
+  CarvedModel carved = drained ? carve_within(model, surface, packing, drained->plan, std::move(outer),
+                                              tolerance, options.max_triangles, monitor)
+                               : CarvedModel{carve_sealed(model, packing, tolerance, monitor), tolerance};
   monitor.check_interrupted();
   return carved;
 }
@@ -96,7 +97,8 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
 
 // Everything that the stages found out.
 HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written,
-                       const HollowOptions& options) {
+                       const HollowOptions& options,
+                       const std::optional<PrintPrediction>& print = std::nullopt) {
   const PreparedModel& model = hollowed.model;
   HollowReport report;
   report.input = model.input;
@@ -119,6 +121,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.drainage = hollowed.drainage;
   report.volume_estimated = model.inspection.parts_overlap();
   report.balance = written.balance;
+  report.print = print;
   report.material = options.material;
   return report;
 }
@@ -129,10 +132,10 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   PackingRequest request = request_of(options, monitor);
   PreparedModel model = prepare_model(options, monitor);
   auto [packing, surface] = pack_model(model, request, monitor);
-  DrainedPacking drained = drain(model, surface, std::move(packing), request.process, options, monitor);
-  CarvedModel carved = carve(model, surface, drained, options, monitor);
-  return {std::move(request),         std::move(model),         std::move(surface),
-          std::move(drained.packing), std::move(drained.voids), std::move(carved)};
+  auto [made, drainage, outer] = drain(model, surface, std::move(packing), request.process, options, monitor);
+  CarvedModel carved = carve(model, surface, made, drainage, std::move(outer), options, monitor);
+  return {std::move(request), std::move(model),    std::move(surface),
+          std::move(made),    std::move(drainage), std::move(carved)};
 }
 
 HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor) {
@@ -150,8 +153,7 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   const std::optional<PrintPrediction> print =
       predict_print(hollowed.model.mesh, hollowed.carved.solid, hollowed.packing, options, log);
   const WrittenFile written = write_to(pending, hollowed, options, log);
-  HollowReport report = report_of(hollowed, written, options);
-  report.print = print;
+  HollowReport report = report_of(hollowed, written, options, print);
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

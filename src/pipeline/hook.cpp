@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "files/output_file.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "core/overhang.h"
 #include "pipeline/process_file.h"
 
@@ -154,11 +155,10 @@ std::string process_names() {
 }
 
 std::string processes_that(const std::function<bool(const Process&)>& condition) {
-  std::string names;
+  std::vector<std::string> names;
   for (const Process& process : processes())
-    if (condition(process)) names += (names.empty() ? "" : ", ") + process.name;
-  if (const std::size_t last = names.rfind(", "); last != std::string::npos) names.replace(last, 2, " and ");
-  return names;
+    if (condition(process)) names.push_back(process.name);
+  return listed(names, "and");
 }
 
 std::string processes_in_words() {

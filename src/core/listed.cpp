@@ -1,0 +1,12 @@
+#include "core/listed.h"
+
+#include <fmt/ranges.h>
+
+namespace aerate {
+
+std::string listed(std::span<const std::string> words, std::string_view last) {
+  if (words.size() < 2) return words.empty() ? std::string() : words.front();
+  return fmt::format("{} {} {}", fmt::join(words.first(words.size() - 1), ", "), last, words.back());
+}
+
+}  // namespace aerate
