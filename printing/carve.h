@@ -20,7 +20,7 @@ struct CarveOptions {
 // sphere, in its order. Each comes from an OpenVDB level set whose voxels suit its radius and the
 // tolerance; its vertices are projected onto the planned sphere, spread evenly over it, and rounded towards
 // its inside. A void keeps at least 90 % of its volume however coarse the tolerance is. The bytes depend on
-// the arguments alone. Throws FailureError if fp32 cannot hold a void so exactly where it is, or if a void
+// the arguments alone. Throws UsageError if fp32 cannot hold a void so exactly where it is, FailureError if a void
 // took more than about a million triangles; InterruptedError.
 Solid carve_keeping_surface(Mesh outer, const Packing& packing, const CarveOptions& options,
                             Monitor& monitor);

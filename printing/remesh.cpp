@@ -111,35 +111,34 @@ std::vector<const VoidShell*> find_shells(const std::vector<std::vector<Sphere>>
   return found;
 }
 
-FailureError too_much_memory(const Mesh& mesh, double voxel_size, double bytes, double max_bytes) {
+UsageError too_much_memory(const Mesh& mesh, double voxel_size, double bytes, double max_bytes) {
   constexpr double kMebibyte = 1024.0 * 1024.0;
   const double for_voxels = max_bytes - kBytesPerTriangle * static_cast<double>(mesh.triangles.size());
   const double would_do = std::sqrt(kBytesPerSurfaceVoxel * surface_area(mesh) / for_voxels);
-  return FailureError(
-      fmt::format("remeshing at a voxel size of {:g} mm would need about {:.0f} MiB of memory, "
-                  "more than the {:.0f} MiB there are for it",
-                  voxel_size, std::ceil(bytes / kMebibyte), std::ceil(max_bytes / kMebibyte)),
-      for_voxels > 0 ? fmt::format("use --voxel {:g} or more", rounded_up(would_do))
-                     : "use a model of fewer triangles");
+  return UsageError(fmt::format("remeshing at a voxel size of {:g} mm would need about {:.0f} MiB of memory, "
+                                "more than the {:.0f} MiB there are for it",
+                                voxel_size, std::ceil(bytes / kMebibyte), std::ceil(max_bytes / kMebibyte)),
+                    for_voxels > 0 ? fmt::format("use --voxel {:g} or more", rounded_up(would_do))
+                                   : "use a model of fewer triangles");
 }
 
-FailureError too_small_for_voxels(const Packing& packing, double voxel_size) {
+VoxelsTooCoarse too_small_for_voxels(const Packing& packing, double voxel_size) {
   double smallest = std::numeric_limits<double>::max();
   std::size_t count = 0;
   for (const Sphere& sphere : packing.spheres) {
     smallest = std::min(smallest, sphere.radius);
     if (sphere.radius < kSmallestVoidRadiusVoxels * voxel_size) ++count;
   }
-  return FailureError(
+  const double fine_enough = rounded_down(smallest / kSmallestVoidRadiusVoxels);
+  return VoxelsTooCoarse(
       fmt::format(
           "{} of {} voids are too small for a voxel size of {:g} mm: the smallest has a radius of {:g} mm",
           count, packing.spheres.size(), voxel_size, smallest),
-      fmt::format("use --voxel {:g} or less, or raise --min-radius",
-                  rounded_down(smallest / kSmallestVoidRadiusVoxels)));
+      fmt::format("use --voxel {:g} or less, or raise --min-radius", fine_enough), fine_enough);
 }
 
 // The void of sphere `lost` has no shell of its own.
-FailureError runs_together(const Packing& packing, std::size_t lost, double voxel_size) {
+VoxelsTooCoarse runs_together(const Packing& packing, std::size_t lost, double voxel_size) {
   const Sphere& sphere = packing.spheres[lost];
   double gap = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
@@ -150,13 +149,14 @@ FailureError runs_together(const Packing& packing, std::size_t lost, double voxe
   }
   const bool neighbour_is_near = gap < 2 * voxel_size;
   const double voxel_wanted = neighbour_is_near ? std::max(gap, 0.0) / 2 : voxel_size / 2;
-  return FailureError(
+  const double fine_enough = rounded_down(voxel_wanted > 0 ? voxel_wanted : voxel_size / 2);
+  return VoxelsTooCoarse(
       fmt::format("the void at ({:g}, {:g}, {:g}) mm runs {} at a voxel size of {:g} mm", sphere.centre.x,
                   sphere.centre.y, sphere.centre.z,
                   neighbour_is_near ? fmt::format("together with its neighbour, {:g} mm away,", gap)
                                     : "into the surface",
                   voxel_size),
-      voxel_wanted > 0 ? fmt::format("use --voxel {:g} or less", rounded_down(voxel_wanted)) : "raise --gap");
+      voxel_wanted > 0 ? fmt::format("use --voxel {:g} or less", fine_enough) : "raise --gap", fine_enough);
 }
 
 }  // namespace
@@ -178,8 +178,8 @@ ModelLevelSet::ModelLevelSet(const Mesh& mesh, double voxel_size, double max_byt
     if (one_shell || !is_noise(shell, voxel_size)) append(surface, shell);
   }
   if (surface.triangles.empty()) {
-    throw FailureError(fmt::format("nothing is left of the model at a voxel size of {:g} mm", voxel_size),
-                       "use a smaller --voxel");
+    throw VoxelsTooCoarse(fmt::format("nothing is left of the model at a voxel size of {:g} mm", voxel_size),
+                          "use a smaller --voxel", voxel_size / 2);
   }
   monitor.check_interrupted();
   impl_ = std::make_unique<Impl>(Impl{std::move(level_set), voxel_size, std::move(surface)});

@@ -23,14 +23,14 @@ inline double rounding_margin(const Sphere& ball) {
   return std::ldexp(largest_coordinate(ball), -23);
 }
 
-// Throws FailureError unless fp32 can hold the ball's surface within `tolerance` mm where it is.
+// Throws UsageError unless fp32 can hold the ball's surface within `tolerance` mm where it is.
 inline void check_resolvable(const Sphere& ball, double tolerance) {
   // fp32 has to resolve this many steps within the tolerance and within the radius.
   constexpr double kMarginsPerTolerance = 4;
   constexpr double kMarginsPerRadius = 256;
   const double margin = rounding_margin(ball);
   if (tolerance >= kMarginsPerTolerance * margin && ball.radius >= kMarginsPerRadius * margin) return;
-  throw FailureError(
+  throw UsageError(
       fmt::format("a void of radius {:f} mm at coordinates up to {:f} mm cannot be kept within a "
                   "tolerance of {:f} mm: coordinates in a mesh file are single precision",
                   ball.radius, largest_coordinate(ball), tolerance),

@@ -29,6 +29,7 @@ FormRequest FormOptions::request(const ModelOptions& model) const {
   HollowOptions& options = request.hollow;
   options.model = model.path;
   options.load = model.load();
+  options.weld = model.weld;
   options.packing = packing_.request();
   const Process& process = options.packing.process.process;
   if (process.drainage == Drainage::needed)

@@ -105,6 +105,7 @@ struct HollowCommand {
     options.model = model.path;
     options.output = output;
     options.load = model.load();
+    options.weld = model.weld;
     options.packing = packing.request();
     options.packing.spheres = spheres;
     options.surface =

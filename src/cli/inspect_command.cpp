@@ -19,6 +19,7 @@ struct InspectCommand {
     InspectOptions options;
     options.model = model.path;
     options.load = model.load();
+    options.weld = model.weld;
     if (self_intersections) options.self_intersections = SelfIntersectionSearch::on;
     run_reported(run_options, {options.model},
                  [&](Monitor& monitor) { return inspect_model(options, monitor); });

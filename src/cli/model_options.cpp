@@ -62,6 +62,12 @@ void ModelOptions::add_size_options(CLI::App& command) {
       ->check(number_between({}, 1e9, ""))
       ->type_name("FACTOR")
       ->capture_default_str();
+  command
+      .add_option("--weld", weld,
+                  "Join vertices at open edges that are at most this far apart, 0 for none (default a "
+                  "hundred-thousandth of the model's diagonal, at most 0.01)")
+      ->check(number_between(0.0, 10, "mm"))
+      ->type_name("MM");
 }
 
 LoadOptions ModelOptions::load() const {

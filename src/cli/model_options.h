@@ -15,7 +15,7 @@ namespace aerate::cli {
 
 // Options that several commands share. Each adds itself to a command and is read after parsing.
 
-// MODEL, --unit, --scale
+// MODEL, --unit, --scale, --weld
 struct ModelOptions {
   explicit ModelOptions(CLI::App& command);
   // The model as an option of this name that may be left out.
@@ -23,6 +23,7 @@ struct ModelOptions {
   LoadOptions load() const;
 
   std::filesystem::path path;
+  std::optional<double> weld;  // mm
 
  private:
   void add_size_options(CLI::App& command);

@@ -25,6 +25,7 @@ struct PackCommand {
     options.model = model.path;
     options.output = output;
     options.load = model.load();
+    options.weld = model.weld;
     options.packing = packing.request();
     run_reported(run_options, {options.model, options.output},
                  [&](Monitor& monitor) { return pack(options, monitor); });

@@ -281,6 +281,7 @@ std::string to_json(const InspectReport& report) {
                       {"box", json_of(shell.box)},
                       {"closed", shell.closed}});
   json["shells"] = shells;
+  json["use"] = report.use;
   if (report.self_intersections) {
     Json places = Json::array();
     for (const Vec3d place : report.self_intersections->places) places.push_back(json_of(place));

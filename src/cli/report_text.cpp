@@ -322,15 +322,7 @@ std::string to_text(const InspectReport& report) {
               count_of(report.self_intersections->pair_count, "pair of triangles", "pairs of triangles"));
     for (const Vec3d place : report.self_intersections->places) lines.add("", "near {} mm", point(place));
   }
-  if (inspection.closed()) {
-    lines.add("use", "{}",
-              inspection.volume < 0 ? "inside out; 'aerate hollow' turns it"
-                                    : "'aerate hollow' can keep this surface as it is");
-  } else if (inspection.open_edges > 0) {
-    lines.add("use", "holes: 'aerate hollow --surface remesh' closes small ones (see --max-hole)");
-  } else {
-    lines.add("use", "triangles face opposite ways: make the normals consistent in a mesh editor");
-  }
+  lines.add("use", "{}", report.use);
   add_stages(lines, report.stages);
   return lines.take();
 }

@@ -10,29 +10,14 @@
 namespace aerate {
 namespace {
 
-struct OpenEdge {
-  std::uint32_t from, to;  // as a patch runs along it: against the triangle that is there
-  bool used = false;
-};
-
-std::vector<OpenEdge> collect_open_edges(const Mesh& mesh, const EdgeUses& uses) {
-  std::vector<OpenEdge> open;
-  for (std::size_t row = 0; row < uses.row_count(); ++row) {
-    uses.for_each_edge(row, [&](std::uint32_t low, std::uint32_t high, std::span<const EdgeUse> edge) {
-      const EdgeBalance balance = balance_of(mesh, low, edge);
-      if (!balance.is_open()) return;
-      open.push_back(balance.forward == 1 ? OpenEdge{high, low} : OpenEdge{low, high});
-    });
-  }
-  return open;
-}
-
 // Walks along open edges from vertex to vertex. Where a walk comes back to a vertex it has visited, the loop
 // is cut off as a chain of its own.
 class BoundaryWalk {
  public:
   BoundaryWalk(std::vector<OpenEdge> edges, std::size_t vertex_count)
-      : edges_(std::move(edges)), place_on_path_(edges_.empty() ? 0 : vertex_count, kNone) {
+      : edges_(std::move(edges)),
+        used_(edges_.size(), false),
+        place_on_path_(edges_.empty() ? 0 : vertex_count, kNone) {
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
       ends_.emplace_back(edges_[e].from, e);
       ends_.emplace_back(edges_[e].to, e);
@@ -41,8 +26,8 @@ class BoundaryWalk {
   }
 
   std::vector<BoundaryChain> chains() {
-    for (const OpenEdge& edge : edges_) {
-      if (!edge.used) walk_from(edge.from);
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (!used_[e]) walk_from(edges_[e].from);
     }
     return std::move(chains_);
   }
@@ -84,22 +69,23 @@ class BoundaryWalk {
   // triangles at a hole may disagree about orientation).
   std::optional<std::uint32_t> take_edge_at(std::uint32_t vertex) {
     const auto begin = std::lower_bound(ends_.begin(), ends_.end(), std::pair{vertex, std::uint32_t{0}});
-    OpenEdge* against = nullptr;
+    std::uint32_t against = kNone;
     for (auto end = begin; end != ends_.end() && end->first == vertex; ++end) {
-      OpenEdge& edge = edges_[end->second];
-      if (edge.used) continue;
-      if (edge.from == vertex) {
-        edge.used = true;
-        return edge.to;
+      const std::uint32_t e = end->second;
+      if (used_[e]) continue;
+      if (edges_[e].from == vertex) {
+        used_[e] = true;
+        return edges_[e].to;
       }
-      if (against == nullptr) against = &edge;
+      if (against == kNone) against = e;
     }
-    if (against == nullptr) return std::nullopt;
-    against->used = true;
-    return against->from;
+    if (against == kNone) return std::nullopt;
+    used_[against] = true;
+    return edges_[against].from;
   }
 
   std::vector<OpenEdge> edges_;
+  std::vector<bool> used_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_;  // vertex, edge
   std::vector<std::uint32_t> path_, place_on_path_;
   std::vector<BoundaryChain> chains_;
@@ -107,8 +93,20 @@ class BoundaryWalk {
 
 }  // namespace
 
+std::vector<OpenEdge> open_edges(const Mesh& mesh, const EdgeUses& uses) {
+  std::vector<OpenEdge> open;
+  for (std::size_t row = 0; row < uses.row_count(); ++row) {
+    uses.for_each_edge(row, [&](std::uint32_t low, std::uint32_t high, std::span<const EdgeUse> edge) {
+      const EdgeBalance balance = balance_of(mesh, low, edge);
+      if (!balance.is_open()) return;
+      open.push_back(balance.forward == 1 ? OpenEdge{high, low} : OpenEdge{low, high});
+    });
+  }
+  return open;
+}
+
 std::vector<BoundaryChain> chain_boundary(const Mesh& mesh, const EdgeUses& uses) {
-  return BoundaryWalk(collect_open_edges(mesh, uses), mesh.positions.size()).chains();
+  return BoundaryWalk(open_edges(mesh, uses), mesh.positions.size()).chains();
 }
 
 BoundaryLoop describe_loop(const Mesh& mesh, const BoundaryChain& chain) {

@@ -91,8 +91,11 @@ bool any_boxes_meet(const std::vector<Shell>& shells) {
   return false;
 }
 
-bool can_overlap(const std::vector<Shell>& shells) {
-  return std::any_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.volume < 0; }) ||
+// Bodies that share edges are one shell, and may lie in each other.
+bool can_overlap(const Inspection& inspection) {
+  const std::vector<Shell>& shells = inspection.shells;
+  return inspection.non_manifold_edges > 0 ||
+         std::any_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.volume < 0; }) ||
          any_boxes_meet(shells);
 }
 
@@ -128,7 +131,7 @@ Inspection inspect(const Mesh& mesh) {
   result.shells = describe_shells(mesh, labels);
   if (!result.closed()) find_open_shells(mesh, uses, labels, result.shells);
   // Winding numbers of a mesh that is not closed depend on the direction of the line.
-  if (result.closed() && can_overlap(result.shells)) {
+  if (result.closed() && can_overlap(result)) {
     const Overlap overlap = measure_overlap(mesh, labels);
     result.overlapped_volume = overlap.volume;
     result.filled_volume = result.volume + overlap.filled_excess;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/mesh.h"
+#include "mesh/inspect.h"
 
 namespace aerate {
 
@@ -13,6 +15,26 @@ struct Repaired {
   Mesh mesh;
   std::vector<std::string> notices;
 };
+
+// Closes cracks of no width: open edges that lie on each other but for rounding, as exports write them whose
+// vertices differ in their last digits. Vertices at open edges that are at most `tolerance` mm apart become one,
+// at the place of the lowest index, from which none is further than that; where one long edge faces several
+// short ones, triangles no wider than that are added at the end. Only what closes open edges is joined: a mesh
+// without any stays as it is. Triangles keep their order; some may come to name a vertex twice. O(m) expected.
+Repaired close_cracks(Mesh mesh, double tolerance);
+
+// A rim that is no hole: its sides lie on each other, no further apart than a fiftieth of its size.
+struct Crack {
+  BoundaryLoop rim;
+  double width;  // mm: close_cracks closes it with twice that
+};
+
+// The largest crack among the boundary's loops, if there is one.
+std::optional<Crack> find_crack(const Mesh& mesh);
+
+// Takes bodies that lie in one place, triangle for triangle, once: the later copies go. Single triangles that
+// are there twice go where edges then agree better; others stay. Triangles keep their order.
+Repaired unite_doubles(Mesh mesh);
 
 // Turns single triangles so that those with a common edge of two triangles run along it in opposite
 // directions; the lesser part of a patch is turned. A shell that cannot be made consistent (like a Moebius

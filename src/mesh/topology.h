@@ -86,6 +86,12 @@ std::vector<Shell> describe_shells(const Mesh& mesh, const ShellLabels& labels);
 void find_open_shells(const Mesh& mesh, const EdgeUses& uses, const ShellLabels& labels,
                       std::vector<Shell>& shells);
 
+// An open edge as a patch runs along it: against the triangle that is there.
+struct OpenEdge {
+  std::uint32_t from, to;
+};
+std::vector<OpenEdge> open_edges(const Mesh& mesh, const EdgeUses& uses);
+
 // Vertices along the rim of a hole, in the order in which a patch has to run along it.
 struct BoundaryChain {
   std::vector<std::uint32_t> vertices;

@@ -71,14 +71,14 @@ Packing with_only(const Packing& packing, std::span<const std::uint32_t> kept) {
   return part;
 }
 
-// Throws FailureError unless fp32 can hold the sides of such a tube anywhere in the model.
+// Throws UsageError unless fp32 can hold the sides of such a tube anywhere in the model.
 void require_resolvable(const Mesh& model, double radius, double tolerance, const char* what) {
   constexpr double kStepsPerSide = 8;
   const double largest = largest_coordinate(model);
   const double step = largest * static_cast<double>(std::numeric_limits<float>::epsilon());
   const auto sides = static_cast<double>(sides_of({{}, {}, radius}, tolerance));
   if (2 * radius * std::sin(std::numbers::pi / sides) >= kStepsPerSide * step) return;
-  throw FailureError(
+  throw UsageError(
       fmt::format("{} of {:g} mm at coordinates up to {:g} mm cannot be kept within a tolerance of "
                   "{:g} mm: coordinates in a mesh file are single precision",
                   what, 2 * radius, largest, tolerance),

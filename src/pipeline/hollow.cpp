@@ -128,7 +128,9 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
 
 }  // namespace
 
-HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
+namespace {
+
+HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
   PackingRequest request = request_of(options, monitor);
   PreparedModel model = prepare_model(options, monitor);
   auto [packing, surface] = pack_model(model, request, monitor);
@@ -136,6 +138,23 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   CarvedModel carved = carve(model, surface, made, drainage, std::move(outer), options, monitor);
   return {std::move(request), std::move(model),    std::move(surface),
           std::move(made),    std::move(drainage), std::move(carved)};
+}
+
+}  // namespace
+
+// Voxels that were not asked for become finer until they hold the voids.
+HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
+  constexpr int kMostTries = 4;
+  HollowOptions tried = options;
+  for (int tries = 1;; ++tries) {
+    try {
+      return carve_once(tried, monitor);
+    } catch (const VoxelsTooCoarse& error) {
+      if (options.voxel_size || tries == kMostTries) throw;
+      tried.voxel_size = error.fine_enough();
+      monitor.notice(fmt::format("{}; voxels of {:g} mm are taken", error.what(), *tried.voxel_size));
+    }
+  }
 }
 
 HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor) {

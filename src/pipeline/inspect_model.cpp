@@ -1,5 +1,7 @@
 #include "pipeline/inspect_model.h"
 
+#include <utility>
+
 #include "pipeline/job_log.h"
 #include "pipeline/prepare.h"
 
@@ -8,12 +10,13 @@ namespace aerate {
 InspectReport inspect_model(const InspectOptions& options, Monitor& monitor) {
   JobLog log(monitor);
   InspectReport report;
-  const PreparedModel model = load_and_inspect(options.model, options.load, log);
+  PreparedModel model = load_and_inspect(options.model, options.load, log);
   report.input = model.input;
   if (options.self_intersections == SelfIntersectionSearch::on) {
     log.stage("self-intersections");
     report.self_intersections = find_self_intersections(model.mesh);
   }
+  report.use = use_of(std::move(model), {.mode = SurfaceMode::automatic, .weld = options.weld});
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "core/monitor.h"
 #include "files/load.h"
@@ -13,6 +14,7 @@ enum class SelfIntersectionSearch { off, on };
 struct InspectOptions {
   std::filesystem::path model;
   LoadOptions load;
+  std::optional<double> weld;  // see HollowOptions
   SelfIntersectionSearch self_intersections = SelfIntersectionSearch::off;
 };
 

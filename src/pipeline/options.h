@@ -45,6 +45,7 @@ struct PackOptions {
   std::filesystem::path model;
   std::filesystem::path output;  // .csv, .json or .ply
   LoadOptions load;
+  std::optional<double> weld;  // see HollowOptions
   PackingRequest packing;
 };
 
@@ -74,6 +75,9 @@ struct HollowOptions {
   std::optional<std::size_t> max_triangles;
   // Edge of the voxels when remeshing, mm; chosen from the limits if not given.
   std::optional<double> voxel_size;
+  // Vertices at open edges are joined that are at most so many mm apart; a hundred-thousandth of the model's
+  // diagonal, and no more than 0.01 mm, if not given.
+  std::optional<double> weld;
   // Remeshing closes holes up to this diameter, mm; a tenth of the model's diagonal if not given.
   std::optional<double> max_hole;
 

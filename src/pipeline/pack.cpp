@@ -90,6 +90,9 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
   return request.method->pack(model.mesh, request.limits(), stop, monitor, request.device);
 }
 
+// Of what is filled: more than this lies in several parts.
+constexpr double kMostlyOverlapped = 0.5;
+
 // Says what would fit, and which limit stands in the way.
 [[noreturn]] void refuse_empty(const PreparedModel& model, const SurfaceIndex& surface,
                                const PackingRequest& request) {
@@ -101,6 +104,12 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
   const std::string place = fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", tenths(largest.centre.x),
                                         tenths(largest.centre.y), tenths(largest.centre.z));
   const double fitting = largest.radius - limits.wall;
+  if (model.inspection.overlapped_volume > kMostlyOverlapped * model.inspection.filled_volume) {
+    throw NothingToRemoveError(
+        fmt::format("{}: nothing to remove: parts overlap in {:.3g} of {:.3g} mm3, which stay solid", file,
+                    model.inspection.overlapped_volume, model.inspection.filled_volume),
+        "--surface remesh of 'aerate hollow' unites the parts");
+  }
   if (fitting <= 0) {
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: the model is thinner than twice the wall of {:.3g} mm; without "
@@ -191,7 +200,7 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   report.output = options.output;
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   AnnouncedFile table(options.output, log);
-  model = make_usable(std::move(model), {.mode = SurfaceMode::keep}, log);
+  model = make_usable(std::move(model), {.mode = SurfaceMode::keep, .weld = options.weld}, log);
   report.input = model.input;
   auto [packing, surface] = pack_model(model, options.packing, log);
   report.packing = std::move(packing);

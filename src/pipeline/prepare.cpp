@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
+#include "mesh/lost_surface.h"
 #include "mesh/repair.h"
 #include "packing/verify.h"
 #include "pipeline/memory.h"
@@ -27,6 +32,23 @@ constexpr double kVoxelsBetweenSurfaces = 3;
 constexpr double kMostVoxelsAlongDiagonal = 1500;
 constexpr double kFewestVoxelsAlongDiagonal = 200;
 
+// Vertices nearer than this share of the model's diagonal are apart by rounding; no more than so many mm.
+constexpr double kRoundingShare = 1e-5;
+constexpr double kMostRounding = 0.01;
+
+// Of a model that is remeshed, parts of its surface may lie this many voxels outside the new one ...
+constexpr double kMostVoxelsLost = 2;
+// ... on no more than this share of it; and its volume may change by a layer of so many voxels (at most 0.01
+// on models of ours that have nothing thin).
+constexpr double kMostAreaLost = 0.01;
+constexpr double kMostVoxelsOfVolume = 0.1;
+// Voxels are halved so often before a model is refused.
+constexpr int kMostHalvings = 3;
+
+// Longest side of a model's box, mm.
+constexpr double kLongestModel = 1e6;
+constexpr double kShortestModel = 1e-3;
+
 // A closed mesh whose volume is less than this share of its bounding box's is flat: rounding, not a solid.
 constexpr double kFlatVolumeShare = 1e-9;
 
@@ -42,6 +64,12 @@ double diagonal_of(const Box3f& box) {
   return length(to_double(box.upper) - to_double(box.lower));
 }
 
+// For an option: three digits, none of them rounded down.
+std::string at_least(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return fmt::format("{:.6g}", std::ceil(value / unit * (1 - 1e-9)) * unit);
+}
+
 std::string holes_in_words(const Inspection& inspection) {
   const BoundaryLoop& largest = inspection.boundary_loops.front();
   const std::size_t holes = inspection.boundary_loops.size();
@@ -53,6 +81,17 @@ std::string holes_in_words(const Inspection& inspection) {
 
 double hole_limit(const Inspection& inspection, const SurfacePolicy& policy) {
   return policy.max_hole.value_or(kSmallHoleShare * diagonal_of(inspection.box));
+}
+
+// Beyond these, single precision and the smallest of steps are of no use to a printer.
+void require_size(const PreparedModel& model) {
+  const Vec3d size = to_double(model.inspection.box.upper) - to_double(model.inspection.box.lower);
+  const double longest = std::max({size.x, size.y, size.z});
+  if (longest <= kLongestModel && longest >= kShortestModel) return;
+  throw MeshError(
+      fmt::format("{}: the model is {:.3g} x {:.3g} x {:.3g} mm; what is printed is {:g} mm to {:g} m long",
+                  name_of(model), size.x, size.y, size.z, kShortestModel, kLongestModel / 1000),
+      "are --unit and --scale right?");
 }
 
 void require_solid(const PreparedModel& model) {
@@ -75,16 +114,34 @@ bool holes_are_small(const Inspection& inspection, const SurfacePolicy& policy) 
   return inspection.boundary_loops.front().diameter <= hole_limit(inspection, policy);
 }
 
+double weld_tolerance(const Inspection& inspection, const SurfacePolicy& policy) {
+  return policy.weld.value_or(std::min(kRoundingShare * diagonal_of(inspection.box), kMostRounding));
+}
+
+// Filling a crack as if it were a hole would cut through the model.
+void refuse_cracks(const PreparedModel& model) {
+  const auto crack = find_crack(model.mesh);
+  if (!crack) return;
+  throw MeshError(
+      fmt::format("{}: the surface is cracked: {} of a rim near ({:.1f}, {:.1f}, {:.1f}) mm, {:.3g} mm "
+                  "across, lie on "
+                  "each other but for {:.3g} mm",
+                  name_of(model), plural(crack->rim.edge_count, "edge", "edges"), crack->rim.centre.x,
+                  crack->rim.centre.y, crack->rim.centre.z, crack->rim.diameter, crack->width),
+      fmt::format("join what is so near with --weld {}", at_least(2 * crack->width)));
+}
+
 // The surface cannot be kept because it is open; says what would help.
 [[noreturn]] void refuse_open(const PreparedModel& model, const SurfacePolicy& policy) {
+  refuse_cracks(model);
   const double largest = model.inspection.boundary_loops.front().diameter;
   throw MeshError(
       fmt::format("{}: {}", name_of(model), holes_in_words(model.inspection)),
       holes_are_small(model.inspection, policy)
           ? "try --surface remesh, which closes holes of this size"
           : fmt::format("holes of more than {:.3g} mm are not closed unasked: close it in a mesh editor, or "
-                        "let --surface remesh span it with --max-hole {:.3g}",
-                        hole_limit(model.inspection, policy), std::ceil(largest * 10) / 10));
+                        "let --surface remesh span it with --max-hole {}",
+                        hole_limit(model.inspection, policy), at_least(largest)));
 }
 
 // Replaces the mesh by a repaired one and passes on what was done.
@@ -100,33 +157,100 @@ void turn_outward(PreparedModel& model, Monitor& monitor) {
     adopt(model, orient_outward(std::move(model.mesh)), monitor);
 }
 
+// What would damage a model that has to be mended: cracks as well as doubled bodies.
+void mend(PreparedModel& model, const SurfacePolicy& policy, Monitor& monitor) {
+  if (model.inspection.open_edges > 0) {
+    Repaired closed = close_cracks(std::move(model.mesh), weld_tolerance(model.inspection, policy));
+    adopt(model, std::move(closed), monitor);
+  }
+  if (model.inspection.duplicate_triangles > 0) adopt(model, unite_doubles(std::move(model.mesh)), monitor);
+  if (model.inspection.misoriented_edges > 0)
+    adopt(model, orient_consistently(std::move(model.mesh)), monitor);
+}
+
+// The largest distance of a vertex from a surface, mm.
+double farthest_vertex(const Mesh& mesh, const SurfaceIndex& surface) {
+  std::vector<Vec3d> vertices(mesh.positions.size());
+  std::transform(mesh.positions.begin(), mesh.positions.end(), vertices.begin(),
+                 [](Vec3f position) { return to_double(position); });
+  const std::vector<double> distances = surface.distances(vertices);
+  return *std::max_element(distances.begin(), distances.end());
+}
+
+// What remeshing made of a model.
+struct Remeshed {
+  ModelLevelSet level_set;
+  Mesh mesh;
+  Inspection inspection;
+  LostSurface lost;
+  double deviation;  // of either surface from the other, less what became solid, mm
+};
+
+Remeshed remesh_at(double voxel_size, const Mesh& original, const SurfaceIndex& surface, Monitor& monitor) {
+  ModelLevelSet level_set(original, voxel_size, kLevelSetMemoryShare * available_memory_bytes(), monitor);
+  Mesh mesh = level_set.surface();
+  Inspection inspection = inspect(mesh);
+  monitor.check_interrupted();
+  const LostSurface lost =
+      find_lost_surface(original, surface, SurfaceIndex(mesh), kMostVoxelsLost * voxel_size);
+  const double deviation = std::max(farthest_vertex(mesh, surface), lost.farthest);
+  return {std::move(level_set), std::move(mesh), std::move(inspection), lost, deviation};
+}
+
+// What is wrong with a remeshed model, in words; empty if nothing is.
+std::string loss_in_words(const Remeshed& remeshed, const Inspection& original) {
+  const double voxel_size = remeshed.level_set.voxel_size();
+  if (remeshed.lost.area_share > kMostAreaLost) {
+    const Vec3d place = remeshed.lost.place;
+    return fmt::format("{:.2g} % of the surface are lost, most near ({:.1f}, {:.1f}, {:.1f}) mm",
+                       100 * remeshed.lost.area_share, place.x, place.y, place.z);
+  }
+  const double before = original.filled_volume, after = remeshed.inspection.filled_volume;
+  if (std::abs(after - before) > kMostVoxelsOfVolume * voxel_size * original.area)
+    return fmt::format("{:.4g} mm3 become {:.4g} mm3", before, after);
+  return {};
+}
+
+// At the voxel size asked for, or the first of ever finer ones at which no part is lost.
+Remeshed remesh_without_loss(const PreparedModel& model, const SurfacePolicy& policy, Monitor& monitor) {
+  const SurfaceIndex surface(model.mesh);
+  double voxel_size = policy.voxel_size.value_or(policy.voxel_to_begin_with);
+  for (int halvings = 0;; ++halvings, voxel_size /= 2) {
+    std::string loss;
+    try {
+      Remeshed remeshed = remesh_at(voxel_size, model.mesh, surface, monitor);
+      loss = loss_in_words(remeshed, model.inspection);
+      if (loss.empty()) return remeshed;
+    } catch (const VoxelsTooCoarse&) {
+      loss = "nothing is left of it";
+    }
+    if (policy.voxel_size || halvings == kMostHalvings) {
+      throw MeshError(
+          fmt::format("{}: voxels of {:.3g} mm are too coarse for the model: {}", name_of(model), voxel_size,
+                      loss),
+          fmt::format("give --voxel {:.2g} or less, or mend the model so that its surface can be kept",
+                      voxel_size / 2));
+    }
+    monitor.notice(fmt::format("voxels of {:.3g} mm are too coarse for the model ({}): {:.3g} mm are taken",
+                               voxel_size, loss, voxel_size / 2));
+  }
+}
+
 PreparedModel remesh(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor) {
   monitor.stage("remesh");
   if (model.inspection.open_edges > 0) {
+    refuse_cracks(model);
     if (!holes_are_small(model.inspection, policy)) refuse_open(model, policy);
-    monitor.notice(
-        fmt::format("{} closed", plural(model.inspection.boundary_loops.size(), "hole is", "holes are")));
     adopt(model, fill_holes(std::move(model.mesh), hole_limit(model.inspection, policy)), monitor);
   }
   turn_outward(model, monitor);
   require_solid(model);
   monitor.check_interrupted();
-
-  const Mesh original = std::move(model.mesh);
-  model.level_set.emplace(original, policy.voxel_size, kLevelSetMemoryShare * available_memory_bytes(),
-                          monitor);
-  model.mesh = model.level_set->surface();
-  if (model.mesh.triangles.empty()) {
-    throw MeshError(fmt::format("{}: nothing is left of the model at a voxel size of {:.3g} mm",
-                                name_of(model), policy.voxel_size),
-                    "give a smaller --voxel");
-  }
-  model.inspection = inspect(model.mesh);
-  std::vector<Vec3d> vertices(model.mesh.positions.size());
-  std::transform(model.mesh.positions.begin(), model.mesh.positions.end(), vertices.begin(),
-                 [](Vec3f position) { return to_double(position); });
-  const std::vector<double> distances = SurfaceIndex(original).distances(vertices);
-  model.outer_deviation = *std::max_element(distances.begin(), distances.end());
+  Remeshed remeshed = remesh_without_loss(model, policy, monitor);
+  model.mesh = std::move(remeshed.mesh);
+  model.inspection = std::move(remeshed.inspection);
+  model.outer_deviation = remeshed.deviation;
+  model.level_set.emplace(std::move(remeshed.level_set));
   return model;
 }
 
@@ -139,6 +263,28 @@ double default_voxel_size(const PackingLimits& limits, const Box3f& box) {
   }
   return std::max(size, diagonal / kMostVoxelsAlongDiagonal);
 }
+
+// Which of the two the model is to go through.
+SurfaceMode surface_mode(const PreparedModel& model, const SurfacePolicy& policy) {
+  if (policy.mode != SurfaceMode::automatic) return policy.mode;
+  const bool has_small_holes = model.inspection.open_edges > 0 && holes_are_small(model.inspection, policy);
+  return has_small_holes ? SurfaceMode::remesh : SurfaceMode::keep;
+}
+
+PreparedModel keep(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor) {
+  if (model.inspection.open_edges > 0) refuse_open(model, policy);
+  turn_outward(model, monitor);
+  require_solid(model);
+  return model;
+}
+
+// Keeps what it is told.
+class NoticeList : public Monitor {
+ public:
+  void notice(std::string_view text) override { texts.emplace_back(text); }
+
+  std::vector<std::string> texts;
+};
 
 }  // namespace
 
@@ -164,29 +310,39 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
 }
 
 PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor) {
-  if (model.inspection.misoriented_edges > 0)
-    adopt(model, orient_consistently(std::move(model.mesh)), monitor);
+  require_size(model);
+  mend(model, policy, monitor);
+  const SurfaceMode mode = surface_mode(model, policy);
+  if (mode == SurfaceMode::keep) return keep(std::move(model), policy, monitor);
+  if (policy.mode == SurfaceMode::automatic)
+    monitor.notice(fmt::format("{}: {}; the surface is meshed anew (--surface remesh)", name_of(model),
+                               holes_in_words(model.inspection)));
+  return remesh(std::move(model), policy, monitor);
+}
 
-  SurfaceMode mode = policy.mode;
-  if (mode == SurfaceMode::automatic) {
-    const bool mendable = model.inspection.open_edges > 0 && holes_are_small(model.inspection, policy);
-    mode = mendable ? SurfaceMode::remesh : SurfaceMode::keep;
-    if (mendable)
-      monitor.notice(fmt::format("{}: {}; the surface is meshed anew (--surface remesh)", name_of(model),
-                                 holes_in_words(model.inspection)));
+std::string use_of(PreparedModel model, const SurfacePolicy& policy) {
+  NoticeList done;
+  try {
+    require_size(model);
+    mend(model, policy, done);
+    if (surface_mode(model, policy) == SurfaceMode::remesh) {
+      refuse_cracks(model);
+      return "'aerate hollow' meshes the surface anew, which closes its holes (see --max-hole)";
+    }
+    static_cast<void>(keep(std::move(model), policy, done));
+  } catch (const MeshError& error) {
+    return fmt::format("none: {}; {}", error.what(), error.hint());
   }
-  if (mode == SurfaceMode::remesh) return remesh(std::move(model), policy, monitor);
-  if (model.inspection.open_edges > 0) refuse_open(model, policy);
-  turn_outward(model, monitor);
-  require_solid(model);
-  return model;
+  if (done.texts.empty()) return "'aerate hollow' can keep this surface as it is";
+  return fmt::format("'aerate hollow' can keep this surface, mended: {}", fmt::join(done.texts, "; "));
 }
 
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor) {
   PreparedModel model = load_and_inspect(options.model, options.load, monitor);
-  const double voxel_size =
-      options.voxel_size.value_or(default_voxel_size(options.packing.limits(), model.inspection.box));
-  return make_usable(std::move(model), {options.surface, options.max_hole, voxel_size}, monitor);
+  const double voxel_size = default_voxel_size(options.packing.limits(), model.inspection.box);
+  return make_usable(std::move(model),
+                     {options.surface, options.weld, options.max_hole, options.voxel_size, voxel_size},
+                     monitor);
 }
 
 }  // namespace aerate

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "core/mesh.h"
 #include "core/monitor.h"
@@ -26,17 +27,23 @@ struct PreparedModel {
 // How the surface may be changed to make the model usable.
 struct SurfacePolicy {
   SurfaceMode mode = SurfaceMode::keep;
-  std::optional<double> max_hole = {};  // mm; see HollowOptions
-  double voxel_size = 0;                // mm, for remeshing
+  std::optional<double> weld = {};        // mm; see HollowOptions
+  std::optional<double> max_hole = {};    // mm; see HollowOptions
+  std::optional<double> voxel_size = {};  // mm, for remeshing; else chosen
+  double voxel_to_begin_with = 0;         // mm: made finer where it loses parts of the model
 };
 
 // Reads and inspects a model; notes several parts. Throws what load_model throws.
 PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOptions& options,
                                Monitor& monitor);
 
-// Turns what is inside out, and remeshes if the policy says so. Throws MeshError, naming what is wrong and
-// where, for a model that bounds no solid or that the policy does not let mend.
+// Closes cracks of no width, takes doubled bodies once, turns what is inside out, and remeshes if the policy
+// says so. Throws MeshError, naming what is wrong and where, for a model that bounds no solid, that the policy
+// does not let mend, or that remeshing would lose parts of.
 PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor);
+
+// What hollowing will make of a model, in words: whether its surface can be kept, or what stands in the way.
+std::string use_of(PreparedModel model, const SurfacePolicy& policy);
 
 // Both, as `hollow` is asked to. Unless the options say, voxels for remeshing leave room for wall and gap.
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor);

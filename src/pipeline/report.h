@@ -35,7 +35,8 @@ struct HollowReport {
   DeviceUse packing_device;
 
   OuterSurface surface = OuterSurface::kept;
-  // When remeshed: voxel edge, and the largest distance of a new vertex from the model as it was read. mm.
+  // When remeshed: voxel edge, and the largest distance between the new surface and the model as it was read,
+  // less what became solid. mm.
   std::optional<double> voxel_size;
   std::optional<double> outer_deviation;
 
@@ -92,6 +93,7 @@ struct PackReport {
 struct InspectReport {
   InputFacts input;
   std::optional<SelfIntersections> self_intersections;
+  std::string use;  // what hollowing will make of it
   std::vector<StageCost> stages;
   std::vector<std::string> notices;
 };

@@ -174,7 +174,7 @@ TEST(Remesh, RefusesMoreMemoryThanAllowedAndNamesAVoxelSizeThatWouldDo) {
   constexpr double kLittle = 2e7;
   Monitor monitor;
   const std::string message =
-      test::message_of<FailureError>([&] { ModelLevelSet(block, 0.01, kLittle, monitor); });
+      test::message_of<UsageError>([&] { ModelLevelSet(block, 0.01, kLittle, monitor); });
   const std::size_t at = message.find("use --voxel ");
   ASSERT_NE(at, std::string::npos) << message;
   const double suggested = std::stod(message.substr(at + 12));
@@ -185,7 +185,7 @@ TEST(Remesh, RefusesMoreMemoryThanAllowedAndNamesAVoxelSizeThatWouldDo) {
 }
 
 TEST(Remesh, SaysThatNothingIsLeft) {
-  EXPECT_TRUE(test::contains(test::message_of<FailureError>([] {
+  EXPECT_TRUE(test::contains(test::message_of<UsageError>([] {
                                level_set_of(test::make_box({0.1f, 0.1f, 0.1f}, {0.3f, 0.3f, 0.3f}), 1);
                              }),
                              "nothing is left"));
@@ -268,7 +268,7 @@ TEST_F(Subtract, RefusesVoidsThatVoxelsCannotHold) {
   packing_.spheres.push_back(ball({2, 2, 2}, 0.7));
   Monitor monitor;
   const ModelLevelSet model = level_set_of(block_, 0.4);
-  const std::string message = test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); });
+  const std::string message = test::message_of<UsageError>([&] { model.subtract(packing_, {}, monitor); });
   EXPECT_TRUE(test::contains(message, "1 of 5 voids are too small for a voxel size of 0.4 mm"));
   EXPECT_TRUE(test::contains(message, "use --voxel 0.35 or less"));
   EXPECT_NO_THROW(level_set_of(block_, 0.35).subtract(packing_, {}, monitor));
@@ -278,7 +278,7 @@ TEST_F(Subtract, RefusesVoidsThatRunTogether) {
   packing_.spheres = {ball({9.6, 10, 10}, 5), ball({19.85, 10, 10}, 5), ball({15, 16, 16}, 2.2)};
   Monitor monitor;
   const ModelLevelSet model = level_set_of(block_, 1);
-  const std::string message = test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); });
+  const std::string message = test::message_of<UsageError>([&] { model.subtract(packing_, {}, monitor); });
   EXPECT_TRUE(test::contains(message, "the void at (9.6, 10, 10) mm runs together with its neighbour"));
   EXPECT_TRUE(test::contains(message, "use --voxel 0.12 or less"));
   EXPECT_NO_THROW(level_set_of(block_, 0.12).subtract(packing_, {}, monitor));
@@ -305,7 +305,7 @@ TEST_F(Subtract, FindsVoidsWithRoofsAgain) {
   const ModelLevelSet model = level_set_of(block_, 0.3);
   EXPECT_NO_THROW(model.subtract(packing_, {}, monitor));
   packing_.limits.roof = make_roof({.bridge = 1});
-  EXPECT_TRUE(test::contains(test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); }),
+  EXPECT_TRUE(test::contains(test::message_of<UsageError>([&] { model.subtract(packing_, {}, monitor); }),
                              "runs together with its neighbour"));
 }
 
@@ -313,7 +313,7 @@ TEST_F(Subtract, RefusesVoidsThatOpenTheSurface) {
   packing_.spheres.push_back(ball({27, 2.7, 17.3}, 2.71));
   Monitor monitor;
   const ModelLevelSet model = level_set_of(block_, 0.4);
-  EXPECT_TRUE(test::contains(test::message_of<FailureError>([&] { model.subtract(packing_, {}, monitor); }),
+  EXPECT_TRUE(test::contains(test::message_of<UsageError>([&] { model.subtract(packing_, {}, monitor); }),
                              "runs into the surface"));
 }
 
