@@ -129,23 +129,25 @@ const BallTemplate* BallLadder::find(std::size_t level) {
   return made ? &*made : nullptr;
 }
 
-FailureError too_many_triangles(const Sphere& ball, double tolerance) {
-  return FailureError(
+UsageError too_many_triangles(const Sphere& ball, double tolerance) {
+  return UsageError(
       fmt::format("a void of radius {:f} mm at a tolerance of {:f} mm needs more than a million "
                   "triangles",
                   ball.radius, tolerance),
       "raise --tolerance");
 }
 
-void BallLadder::prepare(std::span<const Sphere> balls, double tolerance) {
+void BallLadder::prepare(std::span<const Sphere> balls, double tolerance, Monitor& monitor) {
+  constexpr std::size_t kLevelsAtOnce = 8;
   struct Search {
     const Sphere* ball;
     std::size_t level;
   };
   std::vector<Search> searches;
   for (const Sphere& ball : balls) {
-    const double sagitta = allowed_sagitta(ball, tolerance);
-    if (sagitta > 0) searches.push_back({&ball, likely_level(sagitta)});
+    check_resolvable(ball, tolerance);
+    searches.push_back({&ball, likely_level(allowed_sagitta(ball, tolerance))});
+    if (searches.back().level >= kLevelCount) throw too_many_triangles(ball, tolerance);
   }
   const auto is_over = [&](Search& search) {
     for (; search.level < kLevelCount && levels_[search.level]; ++search.level) {
@@ -162,7 +164,11 @@ void BallLadder::prepare(std::span<const Sphere> balls, double tolerance) {
     for (const Search& search : searches) wanted.push_back(search.level);
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) { make(wanted[i]); });
+    for (std::size_t first = 0; first < wanted.size(); first += kLevelsAtOnce) {
+      monitor.check_interrupted();
+      tbb::parallel_for(first, std::min(wanted.size(), first + kLevelsAtOnce),
+                        [&](std::size_t i) { make(wanted[i]); });
+    }
   }
 }
 

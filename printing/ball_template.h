@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/mesh.h"
+#include "core/monitor.h"
 #include "kernels/sphere.h"
 
 // Triangulations of the unit sphere, made once from a level set, to be moved and scaled into the place of
@@ -47,12 +48,13 @@ class BallLadder {
   ~BallLadder();
 
   // The first level, and so about the coarsest, that keeps the surface of a ball within `tolerance` mm of the
-  // sphere and its volume above 90 %. Throws FailureError if fp32 cannot hold it so exactly at its place, or
+  // sphere and its volume above 90 %. Throws UsageError if fp32 cannot hold it so exactly at its place, or
   // if that took more than about a million triangles.
   std::size_t level_for(const Sphere& ball, double tolerance);
 
-  // Makes the levels that `level_for` will ask for, in parallel.
-  void prepare(std::span<const Sphere> balls, double tolerance);
+  // Makes the levels that `level_for` will ask for, in parallel. Throws what it throws, as far as that is known
+  // before any is made; InterruptedError.
+  void prepare(std::span<const Sphere> balls, double tolerance, Monitor& monitor);
 
   // Of any level below kLevelCount, made if it is not yet; null if there is none at this refinement.
   const BallTemplate* find(std::size_t level);
@@ -70,6 +72,6 @@ class BallLadder {
 };
 
 // The error of `level_for`.
-FailureError too_many_triangles(const Sphere& ball, double tolerance);
+UsageError too_many_triangles(const Sphere& ball, double tolerance);
 
 }  // namespace aerate

@@ -10,8 +10,9 @@ namespace aerate {
 namespace {
 
 std::size_t count_triangles(VoidTemplates& templates, const Packing& packing, double tolerance) {
+  Monitor silent;
   std::size_t count = 0;
-  for (const VoidTemplate& chosen : templates.choose(packing.spheres, tolerance)) {
+  for (const VoidTemplate& chosen : templates.choose(packing.spheres, tolerance, silent)) {
     count += chosen.triangle_count();
   }
   return count;
@@ -23,7 +24,7 @@ Solid carve_keeping_surface(Mesh outer, const Packing& packing, const CarveOptio
                             Monitor& monitor) {
   monitor.check_interrupted();
   VoidTemplates templates(packing.limits.roof);
-  const std::vector<VoidTemplate> chosen = templates.choose(packing.spheres, options.tolerance);
+  const std::vector<VoidTemplate> chosen = templates.choose(packing.spheres, options.tolerance, monitor);
   monitor.check_interrupted();
   return assemble(std::move(outer), packing, chosen);
 }

@@ -197,7 +197,7 @@ class DrainedCarver {
       std::vector<Sphere> wanted;
       wanted.reserve(pending.size());
       for (const std::size_t i : pending) wanted.push_back(balls_[i]);
-      ladder.prepare(wanted, tolerance);
+      ladder.prepare(wanted, tolerance, monitor_);
       std::map<std::size_t, StarTriangulation> connected;
       std::vector<const StarTriangulation*> templates;
       templates.reserve(pending.size());

@@ -20,7 +20,7 @@ constexpr LimitRow kRows[] = {
      "Radius of the largest voids"},
     {Limit::least_wall, LimitGroup::printer, "least-wall", "", kMillimetres, 0.0, ""},
     {Limit::least_gap, LimitGroup::printer, "least-gap", "", kMillimetres, 0.0, ""},
-    {Limit::overhang, LimitGroup::ceilings, "overhang", "--overhang", kDegreesFromVertical, kMoreThanZero,
+    {Limit::overhang, LimitGroup::ceilings, "overhang", "--overhang", kDegreesFromVertical, 1.0,
      "How far a ceiling may lean out before it needs support, in degrees from the vertical; voids whose "
      "ceilings lean further and are wider than --bridge get a roof: a cone that leans by this angle, cut "
      "flat where it is as wide as the bridge",

@@ -125,8 +125,9 @@ struct VoidTemplates::Cut {
 VoidTemplates::VoidTemplates(const Roof& roof) : roof_(roof), cuts_(BallLadder::kLevelCount) {}
 VoidTemplates::~VoidTemplates() = default;
 
-std::vector<VoidTemplate> VoidTemplates::choose(std::span<const Sphere> spheres, double tolerance) {
-  ladder_.prepare(spheres, tolerance);
+std::vector<VoidTemplate> VoidTemplates::choose(std::span<const Sphere> spheres, double tolerance,
+                                                Monitor& monitor) {
+  ladder_.prepare(spheres, tolerance, monitor);
   std::vector<VoidTemplate> chosen;
   chosen.reserve(spheres.size());
   for (const Sphere& sphere : spheres) {
@@ -142,6 +143,7 @@ std::vector<VoidTemplate> VoidTemplates::choose(std::span<const Sphere> spheres,
 VoidTemplate VoidTemplates::choose_with_roof(const Sphere& sphere, double tolerance) {
   const RoofTop top = roof_top_of(roof_, sphere, tolerance);
   const double allowed = allowed_sagitta(roof_, sphere, top, tolerance);
+  if (!(allowed > 0)) throw too_many_triangles(sphere, tolerance);
   const double shrunk = 1 - void_shrinkage(roof_, sphere);
   for (std::size_t level = ladder_.level_for(sphere, tolerance); level < BallLadder::kLevelCount; ++level) {
     const CutBall* made = cut(level);

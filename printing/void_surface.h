@@ -36,9 +36,9 @@ class VoidTemplates {
   ~VoidTemplates();
 
   // For each sphere the coarsest template, about, that keeps the surface of its void within `tolerance` mm of
-  // the planned one and its volume above 90 %. Valid while this object lives. Throws FailureError if fp32
+  // the planned one and its volume above 90 %. Valid while this object lives. Throws UsageError if fp32
   // cannot hold a void so exactly at its place, or if that took more than about a million triangles.
-  std::vector<VoidTemplate> choose(std::span<const Sphere> spheres, double tolerance);
+  std::vector<VoidTemplate> choose(std::span<const Sphere> spheres, double tolerance, Monitor& monitor);
 
  private:
   VoidTemplate choose_with_roof(const Sphere& sphere, double tolerance);

@@ -48,6 +48,16 @@ Solid carve_sealed(const PreparedModel& model, const Packing& packing, double to
   return carve_keeping_surface(model.mesh, packing, options, monitor);
 }
 
+void warn_of_many_triangles(const CarvedModel& carved, std::size_t outer_triangles, Monitor& monitor) {
+  constexpr std::size_t kMany = 1000000;
+  const std::size_t count = carved.solid.mesh.triangles.size();
+  if (count <= kMany || count <= 2 * outer_triangles) return;
+  monitor.notice(fmt::format(
+      "the result has {} triangles, the model {}: slicers may be slow with it; --max-triangles or a larger "
+      "--tolerance gives fewer",
+      count, outer_triangles));
+}
+
 // `outer` has the holes of voids that drain.
 CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
                   const std::optional<DrainedVoids>& drained, OuterWithHoles outer,
@@ -57,6 +67,7 @@ CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, const
   CarvedModel carved = drained ? carve_within(model, surface, packing, drained->plan, std::move(outer),
                                               tolerance, options.max_triangles, monitor)
                                : CarvedModel{carve_sealed(model, packing, tolerance, monitor), tolerance};
+  warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
   monitor.check_interrupted();
   return carved;
 }

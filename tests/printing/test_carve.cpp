@@ -124,13 +124,13 @@ TEST(Carve, SameBytesForAnyThreadCount) {
 
 TEST(Carve, SaysWhereSinglePrecisionIsTooCoarse) {
   Monitor monitor;
-  EXPECT_THROW(carve(test::packing_of({ball({1e6, 0, 0}, 1)}), 0.05), FailureError);
-  EXPECT_THROW(carve(test::packing_of({ball({100, 0, 0}, 1e-5)}), 0.05), FailureError);
-  EXPECT_THROW(carve(test::packing_of({ball({100, 0, 0}, 1)}), 1e-5), FailureError);
+  EXPECT_THROW(carve(test::packing_of({ball({1e6, 0, 0}, 1)}), 0.05), UsageError);
+  EXPECT_THROW(carve(test::packing_of({ball({100, 0, 0}, 1e-5)}), 0.05), UsageError);
+  EXPECT_THROW(carve(test::packing_of({ball({100, 0, 0}, 1)}), 1e-5), UsageError);
 }
 
 TEST(Carve, RefusesAVoidOfMillionsOfTriangles) {
-  EXPECT_THROW(estimate_void_triangles(test::packing_of({ball({0, 0, 0}, 100)}), {1e-4}), FailureError);
+  EXPECT_THROW(estimate_void_triangles(test::packing_of({ball({0, 0, 0}, 100)}), {1e-4}), UsageError);
 }
 
 TEST(Carve, StopsWhenInterrupted) {

@@ -181,7 +181,7 @@ TEST(Remesh, RefusesMoreMemoryThanAllowedAndNamesAVoxelSizeThatWouldDo) {
   EXPECT_LE(ModelLevelSet::estimated_bytes(block, suggested), kLittle);
   EXPECT_GE(ModelLevelSet::estimated_bytes(block, suggested / 1.2), kLittle);
   EXPECT_NO_THROW(ModelLevelSet(block, suggested, kLittle, monitor));
-  EXPECT_THROW(ModelLevelSet(block, 1e-12, kPlenty, monitor), FailureError);
+  EXPECT_THROW(ModelLevelSet(block, 1e-12, kPlenty, monitor), UsageError);
 }
 
 TEST(Remesh, SaysThatNothingIsLeft) {
