@@ -34,10 +34,15 @@ inline constexpr const char* kCopyAgain = "export or copy the file again";
 
 // Throws InputError: the file's name and what is wrong with it.
 template <typename... Arguments>
+[[noreturn]] void fail_to_read(const std::string& name, fmt::format_string<Arguments...> what,
+                               Arguments&&... arguments) {
+  throw InputError(fmt::format("{}: {}", name, fmt::format(what, std::forward<Arguments>(arguments)...)));
+}
+
+template <typename... Arguments>
 [[noreturn]] void fail_to_read(const InputFile& file, fmt::format_string<Arguments...> what,
                                Arguments&&... arguments) {
-  throw InputError(
-      fmt::format("{}: {}", file.name, fmt::format(what, std::forward<Arguments>(arguments)...)));
+  fail_to_read(file.name, what, std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace aerate
