@@ -24,6 +24,10 @@ struct InputFile {
 // Bytes that were made here, under the name of the file that they stand for.
 InputFile file_in_memory(std::string name, std::string_view bytes);
 
+// Throws InputError if the file is missing, a directory, or a pipe or a device, which may never end: every
+// input of the user's is looked at before it is opened.
+void check_regular_file(const std::filesystem::path& path);
+
 // Throws InputError if the file is missing, not a regular file, or empty.
 void check_readable(const std::filesystem::path& path);
 

@@ -67,7 +67,7 @@ class ObjCheck {
       begin_next_line();
       token = take_token(line_);
     }
-    const std::size_t comment = token.find('#');
+    const std::size_t comment = find_comment(token);
     if (comment != std::string_view::npos) {
       line_ = {};
       continues_ = false;
@@ -89,7 +89,11 @@ class ObjCheck {
     if (count == 5) lines_.fail("a vertex of {} numbers", count);
     plain_.bytes += 'v';
     const std::size_t kept = count == 4 ? 4 : 3;
-    for (std::size_t i = 0; i < kept; ++i) (plain_.bytes += ' ') += numbers[i];
+    for (std::size_t i = 0; i < kept; ++i) {
+      // assimp counts what begins with a point as no number, and leaves out the vertex.
+      plain_.bytes += numbers[i].starts_with('.') ? " 0" : " ";
+      plain_.bytes += numbers[i];
+    }
     plain_.bytes += '\n';
     ++vertices_;
   }

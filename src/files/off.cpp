@@ -113,7 +113,7 @@ class OffCheck {
     while (token.empty()) {
       const auto line = lines_.next();
       if (!line) return {};
-      line_ = line->substr(0, line->find('#'));
+      line_ = line->substr(0, find_comment(*line));
       token = take_token(line_);
     }
     return token;

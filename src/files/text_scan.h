@@ -48,6 +48,13 @@ inline std::string_view take_token(std::string_view& line) {
   return token;
 }
 
+// Where a comment begins in a line that may have one. "1.#QNAN" is how some compilers write what is no number.
+inline std::size_t find_comment(std::string_view line) {
+  std::size_t mark = line.find('#');
+  while (mark != std::string_view::npos && mark > 0 && line[mark - 1] == '.') mark = line.find('#', mark + 1);
+  return mark;
+}
+
 // The whole of `token` as a decimal number, whatever the locale.
 template <typename Number>
 std::optional<Number> parse_number(std::string_view token) {
