@@ -5,10 +5,12 @@
 #include <utility>
 
 #include "core/error.h"
+#include "files/input_file.h"
 
 namespace aerate {
 
 std::string read_text(const std::filesystem::path& path) {
+  check_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   // Of an empty file nothing can be taken, which counts as a failure.

@@ -12,7 +12,7 @@
 // What slicers read and write is text: G-code, settings, what they print.
 namespace aerate {
 
-// All bytes of a file. Throws InputError if it cannot be read.
+// All bytes of a file. Throws InputError if it cannot be read, or is no regular file.
 std::string read_text(const std::filesystem::path& path);
 
 // Calls f(line) for each line, without its line end; f returns false to stop.

@@ -5,8 +5,21 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
+#include "files/input_file.h"
+
 namespace aerate::cli {
 namespace {
+
+// Empty for a file that can be opened.
+std::string why_unreadable(const std::string& path) {
+  try {
+    check_regular_file(path);
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
 
 class CommandConfig final : public CLI::ConfigTOML {
  public:
@@ -35,7 +48,11 @@ class CommandConfig final : public CLI::ConfigTOML {
 }  // namespace
 
 ConfigFile::ConfigFile(CLI::App& app) : read_(std::make_shared<std::set<std::string>>()) {
-  app.set_config("--config", "", "Read options from this file (TOML or INI)")->type_name("FILE");
+  // Looked at before it is opened.
+  app.set_config("--config", "", "Read options from this file (TOML or INI)")
+      ->type_name("FILE")
+      ->check(why_unreadable)
+      ->trigger_on_parse();
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.config_formatter(std::make_shared<CommandConfig>(app, read_));
 }

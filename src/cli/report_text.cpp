@@ -5,6 +5,7 @@
 
 #include "cli/reports.h"
 #include "core/listed.h"
+#include "core/printable.h"
 #include "pipeline/memory.h"
 #include "printing/slicers/slicers.h"
 
@@ -17,7 +18,7 @@ class Lines {
   template <typename... Arguments>
   void add(const char* label, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::format_to(std::back_inserter(text_), "{:<12}", label);
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
+    text_ += printable(fmt::format(format, std::forward<Arguments>(arguments)...));
     text_ += '\n';
   }
   std::string take() { return std::move(text_); }

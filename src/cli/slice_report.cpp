@@ -4,6 +4,7 @@
 
 #include "cli/json_parts.h"
 #include "cli/reports.h"
+#include "core/printable.h"
 
 namespace aerate::cli {
 namespace {
@@ -86,16 +87,18 @@ std::string closed(Json& json, const FormsReport& report) {
 
 std::string to_text(const SliceReport& report) {
   const SlicerProfile& slicer = *report.slicer.profile;
-  return fmt::format("{:<12}{}\n{:<12}{} ({}){}\n", "model", report.model.filename().string(), "slicer",
-                     slicer.name, report.slicer.program.string(), slicer.untested ? ", untested" : "") +
+  return fmt::format("{:<12}{}\n{:<12}{} ({}){}\n", "model", printable(report.model.filename().string()),
+                     "slicer", slicer.name, printable(report.slicer.program.string()),
+                     slicer.untested ? ", untested" : "") +
          table(report.forms) + voids_line(report.forms.back()) +
-         fmt::format("{:<12}{}: {}\n", "output", report.output.filename().string(),
+         fmt::format("{:<12}{}: {}\n", "output", printable(report.output.filename().string()),
                      name_of(report.best().form)) +
          time_line(report);
 }
 
 std::string to_text(const HookReport& report) {
-  return fmt::format("{:<12}{} ({})\n", "G-code", report.gcode.filename().string(), report.origin.name) +
+  return fmt::format("{:<12}{} ({})\n", "G-code", printable(report.gcode.filename().string()),
+                     printable(report.origin.name)) +
          table(report.forms) + voids_line(report.best()) +
          fmt::format("{:<12}{}{}\n", "result", report.result(),
                      report.remark.empty() ? "" : ": " + report.remark) +

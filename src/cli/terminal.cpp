@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "core/printable.h"
+
 namespace aerate::cli {
 namespace {
 
@@ -30,6 +32,25 @@ std::string toned(std::string_view text, Tone tone) {
   if (!colour_allowed()) return std::string(text);
   const char* code = tone == Tone::error ? "1;31" : tone == Tone::notice ? "33" : "2";
   return fmt::format("\x1b[{}m{}\x1b[0m", code, text);
+}
+
+// A line from outside, such as one of a slicer, as it may be shown: of one that is endless, both ends.
+std::string shown_line(std::string_view line) {
+  constexpr std::size_t kEnd = 600;
+  if (line.size() <= 2 * kEnd) return printable(line);
+  return printable(line.substr(0, kEnd)) + " ... " + printable(line.substr(line.size() - kEnd));
+}
+
+// Lines after the first are set off, so that none from outside can be taken for one of ours.
+std::string shown(std::string_view text) {
+  std::string lines;
+  for (std::size_t start = 0;;) {
+    const std::size_t end = text.find('\n', start);
+    lines += shown_line(text.substr(start, end - start));
+    if (end == std::string_view::npos) return lines;
+    lines += "\n  ";
+    start = end + 1;
+  }
 }
 
 void print_to_stderr(const std::string& text) {
@@ -61,7 +82,7 @@ void TerminalMonitor::progress(double fraction) {
 void TerminalMonitor::notice(std::string_view text) {
   if (verbosity_ == Verbosity::quiet) return;
   clear();
-  print_to_stderr(fmt::format("{} {}\n", toned("aerate: note:", Tone::notice), text));
+  print_to_stderr(fmt::format("{} {}\n", toned("aerate: note:", Tone::notice), shown(text)));
 }
 
 void TerminalMonitor::check_interrupted() {
@@ -86,8 +107,9 @@ void TerminalMonitor::clear() {
 }
 
 void print_error(std::string_view what, std::string_view hint) {
-  print_to_stderr(fmt::format("{} {}\n", toned("aerate: error:", Tone::error), what));
-  if (!hint.empty()) print_to_stderr(fmt::format("{} {}\n", toned("aerate: hint:", Tone::notice), hint));
+  print_to_stderr(fmt::format("{} {}\n", toned("aerate: error:", Tone::error), shown(what)));
+  if (hint.empty()) return;
+  print_to_stderr(fmt::format("{} {}\n", toned("aerate: hint:", Tone::notice), shown(hint)));
 }
 
 }  // namespace aerate::cli

@@ -37,6 +37,8 @@ class TerminalMonitor final : public Monitor {
   int drawn_percent_ = -1;
 };
 
+// What is shown here may hold text from outside: names, lines of files, what a slicer printed.
+
 // "aerate: error: ..." and, if there is one, a line with the hint, on standard error.
 void print_error(std::string_view what, std::string_view hint);
 

@@ -6,9 +6,11 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "files/input_file.h"
 #include "files/part_writer.h"
 
 namespace aerate {
@@ -29,10 +31,9 @@ Affine to_affine(const aiMatrix4x4& m) {
   return Affine(Eigen::Map<const Rows>(&m.a1).topRows<3>().cast<double>());
 }
 
-std::size_t count_faces(const aiScene& scene) {
-  std::size_t faces = 0;
-  for (unsigned int m = 0; m < scene.mNumMeshes; ++m) faces += scene.mMeshes[m]->mNumFaces;
-  return faces;
+// assimp quotes the rest of a file.
+std::string last_error(const Assimp::Importer& importer) {
+  return fmt::format("{:.200}", importer.GetErrorString());
 }
 
 bool has_polygons(const aiMesh& mesh) {
@@ -47,18 +48,18 @@ bool needs_triangulation(const aiScene& scene) {
                      [](const aiMesh* mesh) { return has_polygons(*mesh); });
 }
 
-[[noreturn]] void fail_missing_vertex(const InputFile& file, unsigned int face) {
-  fail_to_read(file, "face {} uses a vertex that is not there", face + 1);
+[[noreturn]] void fail_missing_vertex(const std::string& name, unsigned int face) {
+  fail_to_read(name, "face {} uses a vertex that is not there", face + 1);
 }
 
 // Triangles that a mesh has once every polygon of n corners has become n - 2 of them. Checks what
 // triangulation relies on.
-std::size_t count_triangles(const aiMesh& mesh, const InputFile& file) {
+std::size_t count_triangles(const aiMesh& mesh, const std::string& name) {
   std::size_t triangles = 0;
   for (unsigned int f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     for (unsigned int corner = 0; corner < face.mNumIndices; ++corner) {
-      if (face.mIndices[corner] >= mesh.mNumVertices) fail_missing_vertex(file, f);
+      if (face.mIndices[corner] >= mesh.mNumVertices) fail_missing_vertex(name, f);
     }
     if (face.mNumIndices >= 3) triangles += face.mNumIndices - 2;
   }
@@ -66,19 +67,19 @@ std::size_t count_triangles(const aiMesh& mesh, const InputFile& file) {
 }
 
 // Replaces polygons by triangles.
-const aiScene* triangulate(Assimp::Importer& importer, const InputFile& file) {
+const aiScene* triangulate(Assimp::Importer& importer, const std::string& name) {
   const aiScene* scene = importer.GetScene();
   std::vector<std::size_t> expected(scene->mNumMeshes);
   for (unsigned int m = 0; m < scene->mNumMeshes; ++m)
-    expected[m] = count_triangles(*scene->mMeshes[m], file);
+    expected[m] = count_triangles(*scene->mMeshes[m], name);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr || scene->mNumMeshes != expected.size()) {
-    fail_to_read(file, "its polygons could not be triangulated: {}", importer.GetErrorString());
+    fail_to_read(name, "its polygons could not be triangulated: {}", last_error(importer));
   }
   for (unsigned int m = 0; m < scene->mNumMeshes; ++m) {
-    const std::size_t triangles = count_triangles(*scene->mMeshes[m], file);
+    const std::size_t triangles = count_triangles(*scene->mMeshes[m], name);
     if (triangles != expected[m]) {
-      throw InputError(fmt::format("{}: a polygon could not be triangulated ({} triangles of {})", file.name,
+      throw InputError(fmt::format("{}: a polygon could not be triangulated ({} triangles of {})", name,
                                    triangles, expected[m]),
                        "triangulate the model in the program that made it");
     }
@@ -86,7 +87,7 @@ const aiScene* triangulate(Assimp::Importer& importer, const InputFile& file) {
   return scene;
 }
 
-void add_mesh(const aiMesh& mesh, PartWriter& part, const InputFile& file) {
+void add_mesh(const aiMesh& mesh, PartWriter& part, const std::string& name) {
   const auto corner = [&](unsigned int index) {
     const aiVector3D& v = mesh.mVertices[index];
     return Vec3f{v.x, v.y, v.z};
@@ -97,20 +98,20 @@ void add_mesh(const aiMesh& mesh, PartWriter& part, const InputFile& file) {
     if (face.mNumIndices != 3) continue;
     const unsigned int a = face.mIndices[0], b = face.mIndices[1], c = face.mIndices[2];
     if (a >= mesh.mNumVertices || b >= mesh.mNumVertices || c >= mesh.mNumVertices)
-      fail_missing_vertex(file, f);
+      fail_missing_vertex(name, f);
     part.add_triangle(corner(a), corner(b), corner(c));
   }
 }
 
 void add_node(const aiScene& scene, const aiNode& node, const Affine& parent, double factor,
-              const InputFile& file, Welder& welder, LoadedModel& model) {
+              const std::string& name, Welder& welder, LoadedModel& model) {
   const Affine transform = parent * to_affine(node.mTransformation);
-  PartWriter part(welder, transform, factor, file.name);
+  PartWriter part(welder, transform, factor, name);
   const std::size_t before = welder.triangle_count();
-  for (unsigned int m = 0; m < node.mNumMeshes; ++m) add_mesh(*scene.mMeshes[node.mMeshes[m]], part, file);
+  for (unsigned int m = 0; m < node.mNumMeshes; ++m) add_mesh(*scene.mMeshes[node.mMeshes[m]], part, name);
   if (welder.triangle_count() != before) ++model.part_count;
   for (unsigned int child = 0; child < node.mNumChildren; ++child) {
-    add_node(scene, *node.mChildren[child], transform, factor, file, welder, model);
+    add_node(scene, *node.mChildren[child], transform, factor, name, welder, model);
   }
 }
 
@@ -118,22 +119,22 @@ void add_node(const aiScene& scene, const aiNode& node, const Affine& parent, do
 
 // No vertices are joined by assimp: 5.2 gives an STL facet's normal to its corners, and then takes corners of
 // different facets for different vertices.
-LoadedModel import_with_assimp(const InputFile& file, const char* extension,
-                               std::optional<std::size_t> promised_faces, double factor,
-                               const Affine& placement) {
+LoadedModel import_with_assimp(const std::string& name, const PlainFile& file, const char* extension,
+                               double factor, const Affine& placement) {
+  if (file.triangles == 0) fail_to_read(name, "no triangles");
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // which takes it over
-  const aiScene* scene = importer.ReadFileFromMemory(file.data.get(), file.size, 0, extension);
-  if (scene == nullptr) fail_to_read(file, "cannot be read: {}", importer.GetErrorString());
-  const std::size_t faces = count_faces(*scene);
-  if (promised_faces && faces != *promised_faces)
-    fail_to_read(file, "only {} of {} faces could be read", faces, *promised_faces);
-  if (needs_triangulation(*scene)) scene = triangulate(importer, file);
+  const aiScene* scene = importer.ReadFileFromMemory(file.bytes.data(), file.bytes.size(), 0, extension);
+  if (scene == nullptr) fail_to_read(name, "cannot be read: {}", last_error(importer));
+  if (needs_triangulation(*scene)) scene = triangulate(importer, name);
   LoadedModel model{.mesh = {}, .format = {}, .part_count = 0};
-  Welder welder(faces);
+  Welder welder(file.triangles);
   if (scene->mRootNode != nullptr)
-    add_node(*scene, *scene->mRootNode, placement, factor, file, welder, model);
+    add_node(*scene, *scene->mRootNode, placement, factor, name, welder, model);
   model.mesh = std::move(welder).finish();
+  if (model.mesh.triangles.size() != file.triangles) {
+    fail_to_read(name, "only {} of {} triangles could be read", model.mesh.triangles.size(), file.triangles);
+  }
   return model;
 }
 

@@ -7,6 +7,7 @@
 
 #include "files/assimp_import.h"
 #include "files/formats.h"
+#include "files/input_file.h"
 #include "files/raw_bytes.h"
 #include "files/weld.h"
 
@@ -59,7 +60,7 @@ class GltfCheck {
  public:
   explicit GltfCheck(const InputFile& file) : file_(file) {}
 
-  InputFile run() {
+  PlainFile run() {
     if (file_.size > kMostBytes) fail("more than {} bytes", kMostBytes);
     try {
       parse();
@@ -69,10 +70,8 @@ class GltfCheck {
     } catch (const json::exception& error) {
       fail("not as glTF 2.0 has it: {:.200}", error.what());
     }
-    return plain_file();
+    return {plain_bytes(), triangle_count_};
   }
-
-  std::size_t triangle_count() const { return triangle_count_; }  // of all instances
 
  private:
   void parse() {
@@ -253,7 +252,7 @@ class GltfCheck {
     return plain_["nodes"].size() - 1;
   }
 
-  InputFile plain_file() {
+  std::string plain_bytes() {
     plain_["buffers"].push_back({{"byteLength", data_.size()}});
     std::string text = plain_.dump();
     text.append(-text.size() % 4, ' ');
@@ -267,7 +266,7 @@ class GltfCheck {
     append(data_.size());
     append(kBinaryChunk);
     bytes += data_;
-    return file_in_memory(file_.name, bytes);
+    return bytes;
   }
 
   // Empty where there is none.
@@ -307,20 +306,14 @@ class GltfCheck {
   std::string data_;                         // all buffers, one after another
   std::vector<std::size_t> starts_, sizes_;  // of the buffers in it
   std::vector<std::size_t> triangles_of_mesh_;
-  std::vector<bool> is_used_;  // by node
-  std::size_t triangle_count_ = 0;
-  std::size_t value_count_ = 0;  // of all accessors, for each primitive that uses them
+  std::vector<bool> is_used_;       // by node
+  std::size_t triangle_count_ = 0;  // of all instances
+  std::size_t value_count_ = 0;     // of all accessors, for each primitive that uses them
 };
 
 LoadedModel read_gltf(InputFile& file, const LoadOptions& options) {
-  GltfCheck check(file);
-  const InputFile plain = check.run();
-  LoadedModel model = import_with_assimp(plain, "glb", std::nullopt,
-                                         millimetres_per_unit(options, {"meter", 1000}, file.name));
-  if (model.mesh.triangles.size() != check.triangle_count())
-    fail_to_read(file, "only {} of {} triangles could be read", model.mesh.triangles.size(),
-                 check.triangle_count());
-  return model;
+  return import_with_assimp(file.name, GltfCheck(file).run(), "glb",
+                            millimetres_per_unit(options, {"meter", 1000}, file.name));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace aerate {
 
-void check_readable(const std::filesystem::path& path) {
+void check_regular_file(const std::filesystem::path& path) {
   const std::string name = path.string();
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -16,6 +16,12 @@ void check_readable(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: a directory, not a file", name));
   if (!std::filesystem::is_regular_file(status))
     throw InputError(fmt::format("{}: not a regular file", name));
+}
+
+void check_readable(const std::filesystem::path& path) {
+  check_regular_file(path);
+  const std::string name = path.string();
+  std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw InputError(fmt::format("{}: {}", name, error.message()));
   if (size == 0) throw InputError(fmt::format("{}: the file is empty", name));

@@ -24,6 +24,10 @@ struct InputFile {
 // Bytes that were made here, under the name of the file that they stand for.
 InputFile file_in_memory(std::string name, std::string_view bytes);
 
+// Throws InputError if the file is missing, a directory, or a pipe or a device, which may never end: every
+// input of the user's is looked at before it is opened.
+void check_regular_file(const std::filesystem::path& path);
+
 // Throws InputError if the file is missing, not a regular file, or empty.
 void check_readable(const std::filesystem::path& path);
 
@@ -34,10 +38,15 @@ inline constexpr const char* kCopyAgain = "export or copy the file again";
 
 // Throws InputError: the file's name and what is wrong with it.
 template <typename... Arguments>
+[[noreturn]] void fail_to_read(const std::string& name, fmt::format_string<Arguments...> what,
+                               Arguments&&... arguments) {
+  throw InputError(fmt::format("{}: {}", name, fmt::format(what, std::forward<Arguments>(arguments)...)));
+}
+
+template <typename... Arguments>
 [[noreturn]] void fail_to_read(const InputFile& file, fmt::format_string<Arguments...> what,
                                Arguments&&... arguments) {
-  throw InputError(
-      fmt::format("{}: {}", file.name, fmt::format(what, std::forward<Arguments>(arguments)...)));
+  fail_to_read(file.name, what, std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace aerate

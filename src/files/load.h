@@ -14,6 +14,9 @@ class xml_node;
 
 namespace aerate {
 
+struct InputFile;
+struct MeshFormat;
+
 enum class LengthUnit { millimetre, centimetre, metre, inch };
 
 double millimetres_per(LengthUnit unit);
@@ -38,8 +41,9 @@ struct LoadOptions {
 
 struct LoadedModel {
   Mesh mesh;  // all parts of the file, vertices welded where their coordinates are equal, in millimetres
-  std::string format;          // "STL", "3MF", ...
-  std::size_t part_count = 1;  // objects in the file that were joined
+  std::string format;                     // "STL", "3MF", ...
+  std::size_t part_count = 1;             // objects in the file that were joined
+  std::vector<std::string> notices = {};  // what is amiss in the file and was read all the same
 };
 
 // Reads a model of any of the formats in formats.h; the file name's ending (any case) says which. Triangle
@@ -50,5 +54,8 @@ struct LoadedModel {
 // NaN or infinite coordinates, unknown or garbled content, no triangles, a volume that is not part of the
 // model), UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options = {});
+
+// As above, of a file that is in memory already.
+LoadedModel load_model(InputFile file, const MeshFormat& format, const LoadOptions& options = {});
 
 }  // namespace aerate

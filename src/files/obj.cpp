@@ -1,7 +1,12 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <fmt/compile.h>
 #include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "files/assimp_import.h"
 #include "files/decimal.h"
@@ -12,20 +17,24 @@
 namespace aerate {
 namespace {
 
+// Makes a plain file of vertices, faces and what assimp tells parts apart by: it leaves out whole meshes for a
+// texture coordinate that is not there, takes indented lines for comments, and opens the files of materials.
 class ObjCheck {
  public:
-  explicit ObjCheck(const InputFile& file) : file_(file), lines_(file) {}
+  explicit ObjCheck(const InputFile& file) : file_(file), lines_(file, start_of_text(file.text())) {}
 
-  void run() {
-    while (auto line = lines_.next()) {
-      if (line->find('\0') != std::string_view::npos) lines_.fail("binary data: not an OBJ file");
-      std::string_view rest = *line;
-      const std::string_view keyword = take_token(rest);
+  PlainFile run() {
+    while (const auto line = lines_.next()) {
+      begin_line(*line);
+      const std::string_view keyword = next_token();
       if (keyword == "v") {
-        check_vertex(rest);
+        read_vertex();
       } else if (keyword == "f") {
-        check_face(rest);
+        read_face();
+      } else if (keyword == "o" || keyword == "g" || keyword == "usemtl") {
+        keep_name(keyword);
       }
+      while (continues_) begin_next_line();
     }
     if (faces_ == 0)
       fail_to_read(file_, "no faces ({} vertices): not a surface, or not an OBJ file", vertices_);
@@ -34,20 +43,64 @@ class ObjCheck {
       fail_to_read(file_, "line {}: vertex {} of a face is out of range (the file has {}): truncated?",
                    highest_index_line_, highest_index_, vertices_);
     }
+    return std::move(plain_);
   }
 
  private:
-  void check_vertex(std::string_view line) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (take_token(line).empty()) lines_.fail("a vertex of fewer than three coordinates: truncated?");
+  // A line that ends with a backslash goes on in the next.
+  void begin_line(std::string_view line) {
+    if (line.find('\0') != std::string_view::npos) lines_.fail("binary data: not an OBJ file");
+    continues_ = line.ends_with('\\');
+    if (continues_) line.remove_suffix(1);
+    line_ = line;
+  }
+
+  void begin_next_line() {
+    const auto line = lines_.next();
+    begin_line(line.value_or(""));
+  }
+
+  // Empty at the end of the line or where a comment begins.
+  std::string_view next_token() {
+    std::string_view token = take_token(line_);
+    while (token.empty() && continues_) {
+      begin_next_line();
+      token = take_token(line_);
     }
+    const std::size_t comment = find_comment(token);
+    if (comment != std::string_view::npos) {
+      line_ = {};
+      continues_ = false;
+    }
+    return token.substr(0, comment);
+  }
+
+  // Three coordinates, which a weight or a colour may follow, with or without its opacity.
+  void read_vertex() {
+    constexpr std::size_t kMostNumbers = 7;
+    std::array<std::string_view, kMostNumbers> numbers;
+    std::size_t count = 0;
+    for (std::string_view token = next_token(); !token.empty(); token = next_token()) {
+      if (!is_number(token)) lines_.fail("'{:.20}' is no number", token);
+      if (count == kMostNumbers) lines_.fail("a vertex of more than {} numbers", kMostNumbers);
+      numbers[count++] = token;
+    }
+    if (count < 3) lines_.fail("a vertex of fewer than three coordinates: truncated?");
+    if (count == 5) lines_.fail("a vertex of {} numbers", count);
+    plain_.bytes += 'v';
+    const std::size_t kept = count == 4 ? 4 : 3;
+    for (std::size_t i = 0; i < kept; ++i) {
+      // assimp counts what begins with a point as no number, and leaves out the vertex.
+      plain_.bytes += numbers[i].starts_with('.') ? " 0" : " ";
+      plain_.bytes += numbers[i];
+    }
+    plain_.bytes += '\n';
     ++vertices_;
   }
 
-  void check_face(std::string_view line) {
-    int corners = 0;
-    for (std::string_view corner = take_token(line); !corner.empty(); corner = take_token(line)) {
-      if (corner.front() == '#' || corner == "\\") break;
+  void read_face() {
+    corners_.clear();
+    for (std::string_view corner = next_token(); !corner.empty(); corner = next_token()) {
       const auto index = parse_integer(corner.substr(0, corner.find('/')));
       if (!index || *index == 0) lines_.fail("'{:.20}' is no vertex of a face", corner);
       if (*index < -vertices_)
@@ -56,23 +109,41 @@ class ObjCheck {
         highest_index_ = *index;
         highest_index_line_ = lines_.number();
       }
-      ++corners;
+      corners_.push_back(*index < 0 ? vertices_ + 1 + *index : *index);
     }
-    if (corners == 0) lines_.fail("a face without corners");
+    if (corners_.empty()) lines_.fail("a face without corners");
     ++faces_;
+    // Points and lines have no part in a surface.
+    if (corners_.size() < 3) return;
+    plain_.bytes += 'f';
+    for (const std::int64_t corner : corners_)
+      fmt::format_to(std::back_inserter(plain_.bytes), FMT_COMPILE(" {}"), corner);
+    plain_.bytes += '\n';
+    plain_.triangles += corners_.size() - 2;
+  }
+
+  // The rest of the line is a name. assimp begins a new line at a form feed.
+  void keep_name(std::string_view keyword) {
+    std::string name(line_);
+    std::replace(name.begin(), name.end(), '\f', ' ');
+    ((plain_.bytes += keyword) += name) += '\n';
   }
 
   const InputFile& file_;
   LineReader lines_;
+  std::string_view line_;  // what is left of the current one
+  bool continues_ = false;
+  PlainFile plain_;
+  std::vector<std::int64_t> corners_;  // of the face that is read
   std::int64_t vertices_ = 0, faces_ = 0;
   std::int64_t highest_index_ = 0;
   std::size_t highest_index_line_ = 0;
 };
 
-// assimp leaves out faces of one or two corners, so the number of faces promises nothing.
 LoadedModel read_obj(InputFile& file, const LoadOptions& options) {
-  ObjCheck(file).run();
-  return import_with_assimp(file, "obj", std::nullopt, millimetres_per_unit(options));
+  const PlainFile plain = ObjCheck(file).run();
+  file.data.reset();
+  return import_with_assimp(file.name, plain, "obj", millimetres_per_unit(options));
 }
 
 void write_obj(const Mesh& mesh, OutputFile& file) {

@@ -1,11 +1,18 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <fmt/compile.h>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "files/assimp_import.h"
 #include "files/formats.h"
+#include "files/input_file.h"
 #include "files/own_file.h"
 #include "files/raw_bytes.h"
 #include "files/text_scan.h"
@@ -65,36 +72,40 @@ std::optional<std::int64_t> read_integer(const char* bytes, const Type& type, En
   return value;
 }
 
-bool is_vertex_list(const Element& element, const Property& property) {
-  return element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
+constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+
+bool is_vertex_list(const Property& property) {
+  return property.count_type != nullptr &&
+         (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
+// Makes a plain file of the coordinates and the corners of faces: assimp skips line feeds at the front of
+// binary data, reads the front of "20mm" as 20, and keeps one triangle of each strip.
 class PlyCheck {
  public:
-  explicit PlyCheck(const InputFile& file) : file_(file), text_(file.text()) {}
+  explicit PlyCheck(const InputFile& file)
+      : file_(file), text_(file.text()), position_(start_of_text(text_)) {}
 
-  // The number of faces.
-  std::size_t run() {
+  PlainFile run() {
     read_header();
     const Element* const vertex = find("vertex");
-    const Element* const face = find("face");
     if (vertex == nullptr || vertex->count == 0) fail("no vertices");
-    if (face == nullptr || face->count == 0) fail("{} vertices but no faces", vertex->count);
-    for (const std::string_view axis : {"x", "y", "z"}) {
-      if (std::none_of(vertex->properties.begin(), vertex->properties.end(),
-                       [&](const Property& p) { return p.name == axis && p.count_type == nullptr; })) {
+    if (!has_elements("face") && !has_elements("tristrips")) fail("{} vertices but no faces", vertex->count);
+    for (const std::string_view axis : kAxes) {
+      const Property* const property = find(*vertex, axis);
+      if (property == nullptr || property->count_type != nullptr)
         fail("its vertices have no coordinate {}", axis);
-      }
     }
-    if (std::none_of(face->properties.begin(), face->properties.end(), [&](const Property& p) {
-          return is_vertex_list(*face, p) && p.count_type != nullptr;
-        })) {
-      fail("its faces have no list 'vertex_indices'");
+    for (const std::string_view name : {"face", "tristrips"}) {
+      const Element* const faces = find(name);
+      if (faces != nullptr &&
+          std::none_of(faces->properties.begin(), faces->properties.end(), is_vertex_list))
+        fail("its {} have no list 'vertex_indices'", name == "face" ? "faces" : "strips");
     }
     vertices_ = vertex->count;
-    lines_.emplace(file_, position_);
+    if (is_text()) lines_.emplace(file_, position_);
     for (const Element& element : elements_) walk(element);
-    return static_cast<std::size_t>(face->count);
+    return {plain_header(*vertex) + coordinates_ + faces_, triangles_};
   }
 
  private:
@@ -110,6 +121,7 @@ class PlyCheck {
         if (!count || *count < 0 || *count > std::int64_t{kMostTriangles}) {
           fail("header: the number of elements '{:.20}' is not usable", element);
         }
+        if (find(element) != nullptr) fail("header: two lists of elements '{:.20}'", element);
         elements_.push_back({element, *count, {}});
       } else if (keyword == "property") {
         read_property(line);
@@ -157,21 +169,22 @@ class PlyCheck {
     return line;
   }
 
+  bool is_text() const { return encoding_ == Encoding::ascii; }
+
   void walk(const Element& element) {
-    const bool is_text = encoding_ == Encoding::ascii;
-    if (!is_text && skip_records_of_one_size(element)) return;
+    if (!is_text() && skip_unused(element)) return;
     for (std::int64_t i = 0; i < element.count; ++i) {
-      if (is_text) {
-        const auto line = lines_->next();
-        if (!line) fail_truncated(element, i);
-        line_ = *line;
+      if (is_text() && !element.properties.empty()) next_line(element, i);
+      if (element.name == "vertex") {
+        read_vertex(element, i);
+      } else {
+        for (const Property& property : element.properties) walk(element, property, i);
       }
-      for (const Property& property : element.properties) walk(element, property, i);
     }
   }
 
-  // Binary records without lists need no look at each.
-  bool skip_records_of_one_size(const Element& element) {
+  // Binary records of one size that hold nothing of a surface need no look at each.
+  bool skip_unused(const Element& element) {
     std::size_t stride = 0;
     for (const Property& property : element.properties) {
       if (property.count_type != nullptr) return false;
@@ -180,47 +193,155 @@ class PlyCheck {
     const auto held =
         stride == 0 ? element.count : static_cast<std::int64_t>((text_.size() - position_) / stride);
     if (held < element.count) fail_truncated(element, held);
+    if (element.name == "vertex") return false;
     position_ += stride * static_cast<std::size_t>(element.count);
     return true;
+  }
+
+  void next_line(const Element& element, std::int64_t i) {
+    do {
+      const auto line = lines_->next();
+      if (!line) fail_truncated(element, i);
+      line_ = *line;
+    } while (line_.find_first_not_of(" \t\v\f") == std::string_view::npos);
+  }
+
+  // Its coordinates are copied as they are, in the order x, y, z.
+  void read_vertex(const Element& element, std::int64_t i) {
+    std::array<std::string_view, 3> coordinates;
+    for (const Property& property : element.properties) {
+      const auto axis = std::find(kAxes.begin(), kAxes.end(), property.name);
+      if (axis == kAxes.end()) {
+        walk(element, property, i);
+      } else {
+        coordinates[static_cast<std::size_t>(axis - kAxes.begin())] = take(element, *property.type, i);
+      }
+    }
+    for (const std::string_view coordinate : coordinates) {
+      if (is_text()) {
+        (coordinates_ += coordinate) += ' ';
+      } else if (encoding_ == Encoding::little_endian) {
+        coordinates_ += coordinate;
+      } else {
+        coordinates_.append(coordinate.rbegin(), coordinate.rend());
+      }
+    }
+    if (is_text()) coordinates_.back() = '\n';
   }
 
   void walk(const Element& element, const Property& property, std::int64_t i) {
     std::int64_t count = 1;
     if (property.count_type != nullptr) {
-      count = take(element, *property.count_type, i).value_or(-1);
+      count = integer(take(element, *property.count_type, i), *property.count_type).value_or(-1);
       if (count < 0) fail("{} {}: a list without a count", element.name, i);
     }
+    const bool is_face = element.name == "face", is_strip = element.name == "tristrips";
+    if (!is_vertex_list(property) || !(is_face || is_strip)) {
+      for (std::int64_t value = 0; value < count; ++value) take(element, *property.type, i);
+      return;
+    }
+    corners_.clear();
     for (std::int64_t value = 0; value < count; ++value) {
-      const std::optional<std::int64_t> index = take(element, *property.type, i);
-      if (is_vertex_list(element, property)) check_index(index, i);
+      const auto index = integer(take(element, *property.type, i), *property.type);
+      if (is_strip && index == -1) {
+        add_strip();
+      } else {
+        check_index(index, element, i);
+        corners_.push_back(static_cast<std::uint32_t>(*index));
+      }
+    }
+    if (is_strip) {
+      add_strip();
+    } else {
+      add_face(corners_);
     }
   }
 
-  // The next value of element i: empty for one that is no integer.
-  std::optional<std::int64_t> take(const Element& element, const Type& type, std::int64_t i) {
-    if (encoding_ == Encoding::ascii) {
+  // The next value of element i.
+  std::string_view take(const Element& element, const Type& type, std::int64_t i) {
+    if (is_text()) {
       const std::string_view token = take_token(line_);
       if (token.empty())
         fail("{} {}: too few values in its line: truncated, or not this format", element.name, i);
-      return parse_integer(token);
+      const bool is_whole = type.kind == Kind::real ? is_number(token) : parse_integer(token).has_value();
+      if (!is_whole) lines_->fail("'{:.20}' is no {}", token, type.kind == Kind::real ? "number" : "integer");
+      return token;
     }
     if (text_.size() - position_ < type.bytes) fail_truncated(element, i);
     position_ += type.bytes;
-    return read_integer(text_.data() + position_ - type.bytes, type, *encoding_);
+    return text_.substr(position_ - type.bytes, type.bytes);
   }
 
-  void check_index(std::optional<std::int64_t> index, std::int64_t face) {
-    if (!index) fail("face {}: a vertex index that is no integer", face);
+  // Empty for one that is no integer.
+  std::optional<std::int64_t> integer(std::string_view value, const Type& type) const {
+    return is_text() ? parse_integer(value) : read_integer(value.data(), type, *encoding_);
+  }
+
+  void check_index(std::optional<std::int64_t> index, const Element& element, std::int64_t i) const {
+    if (!index) fail("{} {}: a vertex index that is no integer", element.name, i);
     if (*index < 0 || *index >= vertices_) {
-      fail("face {}: vertex {} is out of range (0 to {})", face, *index, vertices_ - 1);
+      fail("{} {}: vertex {} is out of range (0 to {})", element.name, i, *index, vertices_ - 1);
     }
   }
 
-  const Element* find(std::string_view element_name) const {
-    for (const Element& element : elements_) {
-      if (element.name == element_name) return &element;
+  // Every other triangle of a strip runs the other way round. A repeated vertex makes the strip turn.
+  void add_strip() {
+    for (std::size_t i = 0; i + 2 < corners_.size(); ++i) {
+      Triangle t{corners_[i], corners_[i + 1], corners_[i + 2]};
+      if (t[0] == t[1] || t[1] == t[2] || t[0] == t[2]) continue;
+      if (i % 2 == 1) std::swap(t[0], t[1]);
+      add_face(t);
     }
-    return nullptr;
+    corners_.clear();
+  }
+
+  void add_face(std::span<const std::uint32_t> corners) {
+    if (corners.size() < 3) return;
+    append(static_cast<std::uint32_t>(corners.size()));
+    for (const std::uint32_t corner : corners) append(corner);
+    if (is_text()) faces_.back() = '\n';
+    ++face_count_;
+    triangles_ += corners.size() - 2;
+  }
+
+  void append(std::uint32_t number) {
+    if (is_text()) {
+      fmt::format_to(std::back_inserter(faces_), FMT_COMPILE("{} "), number);
+    } else {
+      append_bytes(faces_, number);
+    }
+  }
+
+  // The first byte after a binary header is no line feed.
+  std::string plain_header(const Element& vertex) const {
+    std::string header = "ply\nformat ";
+    header += is_text() ? "ascii 1.0\n" : "binary_little_endian 1.0\nelement edge 1\nproperty uchar none\n";
+    header += fmt::format("element vertex {}\n", vertices_);
+    for (const std::string_view axis : kAxes)
+      header += fmt::format("property {} {}\n", find(vertex, axis)->type->name, axis);
+    header +=
+        fmt::format("element face {}\nproperty list uint uint vertex_indices\nend_header\n", face_count_);
+    if (!is_text()) header += '\1';
+    return header;
+  }
+
+  const Element* find(std::string_view element_name) const { return find_named(elements_, element_name); }
+
+  static const Property* find(const Element& element, std::string_view property_name) {
+    return find_named(element.properties, property_name);
+  }
+
+  // Null if there is none.
+  template <typename Named>
+  static const Named* find_named(const std::vector<Named>& list, std::string_view name) {
+    const auto found =
+        std::find_if(list.begin(), list.end(), [&](const Named& one) { return one.name == name; });
+    return found == list.end() ? nullptr : &*found;
+  }
+
+  bool has_elements(std::string_view element_name) const {
+    const Element* const element = find(element_name);
+    return element != nullptr && element->count > 0;
   }
 
   [[noreturn]] void fail_truncated(const Element& element, std::int64_t have) const {
@@ -234,16 +355,21 @@ class PlyCheck {
 
   const InputFile& file_;
   std::string_view text_;
-  std::size_t position_ = 0;
+  std::size_t position_;
   std::optional<LineReader> lines_;  // of a text file, after its header
   std::string_view line_;            // what is left of the current one
   std::optional<Encoding> encoding_;
   std::vector<Element> elements_;
   std::int64_t vertices_ = 0;
+  std::vector<std::uint32_t> corners_;  // of the list that is read
+  std::string coordinates_, faces_;     // of the plain file
+  std::size_t face_count_ = 0, triangles_ = 0;
 };
 
 LoadedModel read_ply(InputFile& file, const LoadOptions& options) {
-  return import_with_assimp(file, "ply", PlyCheck(file).run(), millimetres_per_unit(options));
+  const PlainFile plain = PlyCheck(file).run();
+  file.data.reset();
+  return import_with_assimp(file.name, plain, "ply", millimetres_per_unit(options));
 }
 
 // Of our own files: a face is the number 3 and its vertices.

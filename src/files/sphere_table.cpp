@@ -37,14 +37,14 @@ Place line_of(const InputFile& file, const LineReader& lines) {
 double parse_field(std::string_view text, const Place& place) {
   const std::string_view trimmed = take_token(text);
   const auto number = parse_number<double>(trimmed);
-  if (!number || !take_token(text).empty()) fail(place, fmt::format("'{}' is not a number", trimmed));
+  if (!number || !take_token(text).empty()) fail(place, fmt::format("'{:.40}' is not a number", trimmed));
   return *number;
 }
 
 SphereKind parse_kind(std::string_view text, const Place& place) {
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   const auto found = std::find(kKindNames.begin(), kKindNames.end(), text);
-  if (found == kKindNames.end()) fail(place, fmt::format("unknown kind of sphere '{}'", text));
+  if (found == kKindNames.end()) fail(place, fmt::format("unknown kind of sphere '{:.40}'", text));
   return static_cast<SphereKind>(found - kKindNames.begin());
 }
 
@@ -54,7 +54,7 @@ SphereKind parse_kind_number(std::string_view text, const Place& place) {
   for (std::size_t i = 0; i < kKindNames.size(); ++i) {
     if (number == static_cast<double>(i)) return static_cast<SphereKind>(i);
   }
-  fail(place, fmt::format("unknown kind of sphere '{}'", text));
+  fail(place, fmt::format("unknown kind of sphere '{:.40}'", text));
 }
 
 Sphere checked(const Sphere& sphere, const Place& place) {
@@ -116,7 +116,7 @@ std::vector<Sphere> read_json(const InputFile& file) {
       spheres.push_back(checked({centre, entry.at(3).get<double>(), kind}, place()));
     }
   } catch (const nlohmann::json::exception& error) {
-    fail(place(), error.what());
+    fail(place(), fmt::format("{:.200}", error.what()));
   }
   return spheres;
 }

@@ -1,10 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "files/assimp_import.h"
 #include "files/formats.h"
+#include "files/input_file.h"
 #include "files/own_file.h"
 #include "files/part_writer.h"
 #include "files/raw_bytes.h"
@@ -31,8 +35,7 @@ Corners corners_of(const char* facet) {
 // Both kinds may begin with "solid"; binary data has zero bytes early on, text has none.
 bool looks_like_text(std::string_view text) {
   constexpr std::string_view kKeyword = "solid";
-  const std::size_t start =
-      text.find_first_not_of(" \t\r\n", text.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0);
+  const std::size_t start = text.find_first_not_of(" \t\r\n", start_of_text(text));
   if (start == std::string_view::npos || text.size() - start < kKeyword.size()) return false;
   for (std::size_t i = 0; i < kKeyword.size(); ++i) {
     if (to_lower_ascii(text[start + i]) != kKeyword[i]) return false;
@@ -45,7 +48,9 @@ bool is_binary_of_its_size(const InputFile& file) {
          file.size == kPreambleBytes + promised_facets(file.data.get()) * kFacetBytes;
 }
 
-std::size_t check_binary(const InputFile& file) {
+// The number of facets. Programs that do not know it when they begin to write leave any number in the header:
+// whole facets are counted by the size of the file.
+std::size_t check_binary(const InputFile& file, std::vector<std::string>& notices) {
   if (file.size < kPreambleBytes) {
     fail_to_read(file,
                  "{} bytes are too few for an STL file (neither text that begins with 'solid' nor the {} "
@@ -53,115 +58,172 @@ std::size_t check_binary(const InputFile& file) {
                  file.size, kPreambleBytes);
   }
   const std::size_t promised = promised_facets(file.data.get());
-  if (!is_binary_of_its_size(file)) {
-    const std::size_t needed = kPreambleBytes + promised * kFacetBytes;
+  const std::size_t held = (file.size - kPreambleBytes) / kFacetBytes;
+  const std::size_t needed = kPreambleBytes + promised * kFacetBytes;
+  const bool is_whole = file.size == kPreambleBytes + held * kFacetBytes;
+  if (!is_whole || (held == 0 && promised != 0)) {
     throw InputError(
         fmt::format(
             "{}: the STL header promises {} triangles, which take {} bytes, but the file has {} bytes "
             "({} whole triangles): {}",
-            file.name, promised, needed, file.size, (file.size - kPreambleBytes) / kFacetBytes,
+            file.name, promised, needed, file.size, held,
             file.size < needed ? "truncated, or not an STL file" : "wrong triangle count"),
         kCopyAgain);
   }
-  if (promised > kMostTriangles)
-    fail_to_read(file, "{} triangles are more than vertices can be numbered for", promised);
-  return promised;
+  if (promised != held) {
+    notices.push_back(fmt::format("the STL header promises {} triangles, the file holds {}: these are taken",
+                                  promised, held));
+  }
+  if (held > kMostTriangles)
+    fail_to_read(file, "{} triangles are more than vertices can be numbered for", held);
+  return held;
 }
 
-// Reads the keywords of a text STL file; makes it lower case and blanks the names of its solids, which may
-// hold anything, so that the importer sees keywords and numbers only.
+// Reads text STL. Normals are not used, so anything may stand for their numbers; the names of solids may be
+// anything to the end of their line.
 class TextStlCheck {
  public:
-  explicit TextStlCheck(InputFile& file) : file_(file), cursor_(file.data.get()), end_(cursor_ + file.size) {
-    if (file.text().starts_with(kUtf8Mark)) std::fill_n(cursor_, kUtf8Mark.size(), ' ');
-  }
+  TextStlCheck(const std::string& name, std::string_view text, std::vector<std::string>& notices)
+      : name_(name), text_(text), notices_(notices), rest_(text.substr(start_of_text(text))) {}
 
-  std::size_t count_facets() {
+  PlainFile run() {
     for (std::string_view token = next_token(); !token.empty(); token = next_token()) read(token);
-    if (inside_solid_) fail_truncated();
-    return facets_;
+    if (inside_facet_) fail_truncated();
+    if (inside_solid_ && plain_.triangles == 0)
+      fail("no triangle follows 'solid' and the name that ends with its line");
+    if (inside_solid_) notices_.emplace_back("the STL file does not end with 'endsolid': cut short?");
+    plain_.bytes += "endsolid\n";
+    return std::move(plain_);
   }
 
  private:
   void read(std::string_view token) {
     if (token == "vertex") {
       if (!inside_facet_ || ++facet_vertices_ > 3) fail("a vertex that belongs to no triangle");
+      read_vertex();
     } else if (token == "facet") {
       if (inside_facet_) fail("a triangle begins before the one before it ends");
-      inside_facet_ = true;
-      facet_vertices_ = 0;
-      ++facets_;
+      begin_facet();
     } else if (token == "endfacet") {
       if (!inside_facet_ || facet_vertices_ != 3)
         fail(fmt::format("a triangle of {} vertices", facet_vertices_));
       inside_facet_ = false;
-    } else if (token == "solid") {
-      if (inside_solid_) fail("'solid' before the 'endsolid' of the one before it");
-      inside_solid_ = true;
-      blank_line();
-    } else if (token == "endsolid") {
-      if (inside_facet_) fail("'endsolid' inside a triangle");
-      inside_solid_ = false;
-      blank_line();
-    } else if (!is_filler(token)) {
-      if (cursor_ == end_) fail_truncated();
+    } else if (token == "solid" || token == "endsolid") {
+      if (inside_facet_) fail(fmt::format("'{}' inside a triangle", token));
+      inside_solid_ = token == "solid";
+      is_written_ = false;
+      skip_line();
+    } else if (is_comment(token) || !(inside_solid_ || inside_facet_)) {
+      skip_line();
+    } else if (token != "outer" && token != "loop" && token != "endloop") {
+      if (rest_.empty()) fail_truncated();
       fail(fmt::format("'{:.20}' is no keyword of STL", token));
     }
   }
 
-  // Numbers are the importer's to read.
-  static bool is_filler(std::string_view token) {
-    const bool number = token.find_first_of("0123456789") != std::string_view::npos ||
-                        token.find("nan") != std::string_view::npos ||
-                        token.find("inf") != std::string_view::npos;
-    return number || token == "outer" || token == "loop" || token == "endloop" || token == "normal";
+  static bool is_comment(std::string_view token) {
+    return token.starts_with('#') || token.starts_with(';') || token.starts_with("//");
   }
 
-  std::string_view next_token() {
-    while (cursor_ != end_ && (is_blank(*cursor_) || *cursor_ == '\n')) ++cursor_;
-    const char* const token = cursor_;
-    while (cursor_ != end_ && !is_blank(*cursor_) && *cursor_ != '\n') {
-      *cursor_ = to_lower_ascii(*cursor_);
-      ++cursor_;
+  void begin_facet() {
+    if (next_token() != "normal") {
+      if (rest_.empty()) fail_truncated();
+      fail("a triangle without its normal");
     }
-    return {token, static_cast<std::size_t>(cursor_ - token)};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view token = next_token();
+      if (token.empty()) fail_truncated();
+      if (token == "outer" || token == "vertex") fail("a normal of fewer than three numbers");
+    }
+    if (!is_written_) plain_.bytes += plain_.triangles == 0 ? "solid\n" : "endsolid\nsolid\n";
+    is_written_ = true;
+    inside_facet_ = true;
+    facet_vertices_ = 0;
+    ++plain_.triangles;
+    plain_.bytes += "facet normal 0 0 0\n";
   }
 
-  void blank_line() {
-    while (cursor_ != end_ && *cursor_ != '\n' && *cursor_ != '\r') *cursor_++ = ' ';
+  void read_vertex() {
+    plain_.bytes += "vertex";
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view token = next_token();
+      if (rest_.empty()) fail_truncated();
+      if (!is_number(token)) fail(fmt::format("'{:.20}' is no number", token));
+      (plain_.bytes += ' ') += token;
+    }
+    plain_.bytes += '\n';
   }
+
+  // In lower case, valid until the next one. Some programs write "end loop".
+  std::string_view next_token() {
+    token_ = next_word();
+    std::transform(token_.begin(), token_.end(), token_.begin(), to_lower_ascii);
+    if (token_ == "end") token_ += next_word();
+    return token_;
+  }
+
+  std::string_view next_word() {
+    while (!rest_.empty() && is_space(rest_.front())) rest_.remove_prefix(1);
+    std::size_t length = 0;
+    while (length < rest_.size() && !is_space(rest_[length])) ++length;
+    const std::string_view word = rest_.substr(0, length);
+    rest_.remove_prefix(length);
+    return word;
+  }
+
+  static bool is_space(char c) { return is_blank(c) || c == '\n'; }
+
+  void skip_line() { rest_.remove_prefix(std::min(rest_.find_first_of("\r\n"), rest_.size())); }
 
   [[noreturn]] void fail_truncated() const {
-    fail(fmt::format("the file ends before 'endsolid', in or after triangle {}: truncated", facets_));
+    fail(
+        fmt::format("the file ends before 'endsolid', in or after triangle {}: truncated", plain_.triangles));
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    const auto line = 1 + std::count(file_.data.get(), cursor_, '\n');
-    throw InputError(fmt::format("{}: line {}: {}", file_.name, line, what), kCopyAgain);
+    const std::string_view read = text_.substr(0, text_.size() - rest_.size());
+    throw InputError(
+        fmt::format("{}: line {}: {}", name_, 1 + std::count(read.begin(), read.end(), '\n'), what),
+        kCopyAgain);
   }
 
-  const InputFile& file_;
-  char* cursor_;
-  char* end_;
-  std::size_t facets_ = 0;
+  const std::string& name_;
+  std::string_view text_;
+  std::vector<std::string>& notices_;
+  std::string_view rest_;
+  std::string token_;
+  PlainFile plain_;
   int facet_vertices_ = 0;
   bool inside_solid_ = false;
   bool inside_facet_ = false;
+  bool is_written_ = false;  // the 'solid' that the next triangle belongs to
 };
+
+LoadedModel read_text_stl(InputFile& file, std::string_view text, double factor) {
+  std::vector<std::string> notices;
+  const PlainFile plain = TextStlCheck(file.name, text, notices).run();
+  file.data.reset();
+  LoadedModel model = import_with_assimp(file.name, plain, "stl", factor);
+  model.notices = std::move(notices);
+  return model;
+}
 
 // assimp would read a binary file too, but takes some headers for colours or other encodings.
 LoadedModel read_stl(InputFile& file, const LoadOptions& options) {
   const double factor = millimetres_per_unit(options);
-  if (!is_binary_of_its_size(file) && looks_like_text(file.text()))
-    return import_with_assimp(file, "stl", TextStlCheck(file).count_facets(), factor);
-  const std::size_t count = check_binary(file);
+  // Some programs fill up the last block of a text file.
+  const std::string_view text = file.text().substr(0, file.text().find_last_not_of('\0') + 1);
+  if (!is_binary_of_its_size(file) && looks_like_text(text)) return read_text_stl(file, text, factor);
+  LoadedModel model;
+  const std::size_t count = check_binary(file, model.notices);
   Welder welder(count);
   PartWriter part(welder, Affine::Identity(), factor, file.name);
   for (std::size_t i = 0; i < count; ++i) {
     const auto [a, b, c] = corners_of(file.data.get() + kPreambleBytes + i * kFacetBytes);
     part.add_triangle(a, b, c);
   }
-  return {.mesh = std::move(welder).finish(), .format = {}};
+  model.mesh = std::move(welder).finish();
+  return model;
 }
 
 // In fp64, where the cross product of any fp32 edges neither vanishes nor overflows. Some slicers refuse zero

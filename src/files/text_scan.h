@@ -32,6 +32,11 @@ inline std::string ending_of(const std::filesystem::path& path) {
   return ending;
 }
 
+// What begins after the mark of UTF-8, if a text has one.
+inline std::size_t start_of_text(std::string_view text) {
+  return text.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0;
+}
+
 // Takes the next run of non-blank characters off the front of `line`; empty at its end.
 inline std::string_view take_token(std::string_view& line) {
   std::size_t begin = 0;
@@ -41,6 +46,13 @@ inline std::string_view take_token(std::string_view& line) {
   const std::string_view token = line.substr(begin, end - begin);
   line.remove_prefix(end);
   return token;
+}
+
+// Where a comment begins in a line that may have one. "1.#QNAN" is how some compilers write what is no number.
+inline std::size_t find_comment(std::string_view line) {
+  std::size_t mark = line.find('#');
+  while (mark != std::string_view::npos && mark > 0 && line[mark - 1] == '.') mark = line.find('#', mark + 1);
+  return mark;
 }
 
 // The whole of `token` as a decimal number, whatever the locale.
@@ -56,11 +68,18 @@ inline std::optional<std::int64_t> parse_integer(std::string_view token) {
   return parse_number<std::int64_t>(token);
 }
 
+// Whether the whole of `token` is a decimal number, NaN and infinity among them, that assimp reads as one: it
+// takes the front of "20mm" or "20,5" for all of it, and wraps around when there are too many digits.
+bool is_number(std::string_view token);
+
 // Lines of a text file, ended by LF, CR or CR LF, numbered from 1.
 class LineReader {
  public:
   explicit LineReader(const InputFile& file, std::size_t start = 0)
-      : file_(file), rest_(file.text().substr(start)) {}
+      : file_(file), rest_(file.text().substr(start)) {
+    const std::string_view before = file.text().substr(0, start);
+    number_ = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
+  }
 
   std::optional<std::string_view> next() {
     if (rest_.empty()) return std::nullopt;

@@ -4,6 +4,7 @@
 
 #include "files/assimp_import.h"
 #include "files/formats.h"
+#include "files/input_file.h"
 #include "files/raw_bytes.h"
 
 namespace aerate {
@@ -33,15 +34,13 @@ class ThreeDsCheck {
  public:
   explicit ThreeDsCheck(const InputFile& file) : file_(file) {}
 
-  InputFile run() {
+  PlainFile run() {
     if (file_.size > kMostBytes) fail_to_read(file_, "more than {} bytes", kMostBytes);
     walk(file_.text(), [&](std::uint16_t chunk, std::string_view content) {
       if (chunk == whole_file) read_scenes(content);
     });
-    return file_in_memory(file_.name, make_chunk(whole_file, make_chunk(scene, objects_)));
+    return {make_chunk(whole_file, make_chunk(scene, objects_)), triangle_count_};
   }
-
-  std::size_t face_count() const { return face_count_; }
 
  private:
   // Calls f(chunk, content) for each of the chunks that `bytes` consists of.
@@ -95,7 +94,7 @@ class ThreeDsCheck {
       }
     }
     if (count == 0) return;
-    face_count_ += count;
+    triangle_count_ += count;
     objects_ += make_chunk(
         object, std::string(1, '\0') + make_chunk(mesh, make_chunk(vertices, std::string(corners)) +
                                                             make_chunk(faces, std::string(triangles))));
@@ -111,17 +110,15 @@ class ThreeDsCheck {
 
   const InputFile& file_;
   std::string objects_;
-  std::size_t face_count_ = 0;
+  std::size_t triangle_count_ = 0;
 };
 
 LoadedModel read_3ds(InputFile& file, const LoadOptions& options) {
-  ThreeDsCheck check(file);
-  const InputFile plain = check.run();
-  if (check.face_count() == 0) fail_to_read(file, "no triangles");
   // assimp turns the z axis of a 3DS file to y.
   Affine turned_back = Affine::Identity();
   turned_back.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  return import_with_assimp(plain, "3ds", check.face_count(), millimetres_per_unit(options), turned_back);
+  return import_with_assimp(file.name, ThreeDsCheck(file).run(), "3ds", millimetres_per_unit(options),
+                            turned_back);
 }
 
 }  // namespace

@@ -293,6 +293,9 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
   PreparedModel model;
   monitor.stage("load");
   LoadedModel loaded = load_model(path, options);
+  for (const std::string& notice : loaded.notices) {
+    monitor.notice(fmt::format("{}: {}", path.filename().string(), notice));
+  }
   model.mesh = std::move(loaded.mesh);
   model.input.path = path;
   model.input.format = loaded.format;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 
 #include "core/error.h"
+#include "files/input_file.h"
 
 namespace aerate {
 namespace {
@@ -18,16 +19,17 @@ constexpr const char* kHint =
     "docs/processes.md describes process files; '--process list' names the built-in ones";
 
 Json parse(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
     throw InputError(
         fmt::format("{}: the process file cannot be read", path.string()),
         "a process is a built-in name or the path of a .json file; '--process list' names the former");
   }
+  const InputFile file = read_file(path);
   try {
-    return Json::parse(file);
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: not JSON: {}", path.string(), error.what()), kHint);
+    return Json::parse(file.text());
+  } catch (const Json::exception& why) {
+    throw InputError(fmt::format("{}: not JSON: {:.200}", path.string(), why.what()), kHint);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <vector>
 
 #include "tests/cli/job.h"
@@ -51,6 +52,37 @@ TEST(BadInput, Directory) {
   expect_refused(job, run(job.hollow(job.folder() / "folder.stl")), kUnreadable, {"folder.stl", "directory"});
 }
 
+// Whoever opens a pipe that nobody writes to waits for ever.
+TEST(BadInput, PipesAreRefusedAsAnyInput) {
+  const Job job;
+  const auto pipe = [&](const std::string& name) {
+    const std::filesystem::path path = job.folder() / name;
+    EXPECT_EQ(mkfifo(path.c_str(), 0600), 0);
+    return path.string();
+  };
+  const auto model = job.input("block.stl", block());
+  expect_refused(job, run(job.hollow(pipe("p.stl"))), kUnreadable, {"p.stl", "not a regular file"});
+  expect_refused(job, run(job.hollow(model, {"--spheres", pipe("p.csv")})), kUnreadable, {"p.csv"});
+  expect_refused(job, run(job.hollow(model, {"--process", pipe("p.json")})), kUnreadable, {"p.json"});
+  expect_refused(job, run({AERATE_EXECUTABLE, "hook", pipe("p.gcode")}), kUnreadable, {"p.gcode"});
+  std::vector<std::string> configured = job.hollow(model);
+  configured.insert(configured.begin() + 1, {"--config", pipe("p.toml")});
+  expect_refused(job, run(configured), kUsage, {"p.toml", "not a regular file"});
+}
+
+TEST(BadInput, NothingFromOutsideReachesTheTerminalRaw) {
+  const Job job;
+  const std::string name = "red\x1b[31m\x9b\xff.stl", shown = "red\\x1b[31m\\x9b\\xff.stl";
+  const auto broken = job.input(name, "solid \x1b[2J\nfacet \x1b[2J");
+  expect_refused(job, run(job.hollow(broken)), kUnreadable, {shown});
+  const ProcessResult found = run({AERATE_EXECUTABLE, "inspect", job.input(name, block())});
+  EXPECT_TRUE(contains(found.out, shown));
+  const std::string obj = "v 0 0 0\nf 1 1 \x1b]0;title\x07\n";
+  expect_refused(job, run(job.hollow(job.input("a.obj", obj))), kUnreadable, {"'\\x1b]0;title\\x07'"});
+  for (const std::string& text : {found.out, found.err, run(job.hollow(broken)).err})
+    EXPECT_EQ(text.find_first_of("\x1b\x07\x9b\xff"), std::string::npos);
+}
+
 TEST(BadInput, EmptyFile) {
   for (const char* ending : {"stl", "obj", "ply", "off", "3mf"}) {
     const Job job;
@@ -71,6 +103,7 @@ TEST(BadInput, WrongTriangleCount) {
     const Job job;
     std::string bytes = to_binary_stl(block());
     std::memcpy(bytes.data() + 80, &count, sizeof(count));
+    bytes += "a comment";
     expect_refused(job, run(job.hollow(job.input("count.stl", bytes))), kUnreadable,
                    {"count.stl", std::to_string(count)});
   }
