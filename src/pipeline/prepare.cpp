@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "mesh/repair.h"
+#include "mesh/topology.h"
 #include "packing/verify.h"
 #include "pipeline/memory.h"
 
@@ -147,6 +148,7 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
   PreparedModel model;
   monitor.stage("load");
   LoadedModel loaded = load_model(path, options);
+  for (const std::string& notice : loaded.notices) monitor.notice(notice);
   model.mesh = std::move(loaded.mesh);
   model.input.path = path;
   model.input.format = loaded.format;
@@ -164,6 +166,8 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
 }
 
 PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor) {
+  if (std::ranges::any_of(model.mesh.triangles, has_repeated_vertex))
+    adopt(model, without_repeated_vertices(std::move(model.mesh)), monitor);
   if (model.inspection.misoriented_edges > 0)
     adopt(model, orient_consistently(std::move(model.mesh)), monitor);
 
