@@ -1,12 +1,50 @@
 #include "cli/config_file.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
 #include <memory>
+#include <sstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace aerate::cli {
 namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+constexpr std::ptrdiff_t kDeepest = 8;
+
+// The program has sections one deep, and CLI11 compares all levels of a name with each other.
+void require_shallow(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    // A key ends before its value; a section's name fills its line.
+    const std::string_view name = std::string_view(line).substr(0, line.find('='));
+    if (std::ranges::count(name, '.') >= kDeepest)
+      throw CLI::ConfigError(fmt::format("line {} is nested deeper than {}", number, kDeepest));
+  }
+}
+
+std::string read_config(std::istream& input) {
+  std::string text(kMostBytes + 1, '\0');
+  input.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(input.gcount()));
+  if (text.size() > kMostBytes) throw CLI::ConfigError(fmt::format("more than {} bytes", kMostBytes));
+  require_shallow(text);
+  return text;
+}
+
+// A pipe or a device would be waited for, or never end.
+std::string not_a_file(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!exists(status)) return "File does not exist: " + path;
+  return is_regular_file(status) ? std::string() : path + ": not a regular file";
+}
 
 class CommandConfig final : public CLI::ConfigTOML {
  public:
@@ -14,7 +52,8 @@ class CommandConfig final : public CLI::ConfigTOML {
       : app_(app), read_(std::move(read)) {}
 
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    std::vector<CLI::ConfigItem> found = CLI::ConfigTOML::from_config(input);
+    std::istringstream text(read_config(input));
+    std::vector<CLI::ConfigItem> found = CLI::ConfigTOML::from_config(text);
     const std::vector<CLI::App*> commands =
         const_cast<CLI::App&>(app_).get_subcommands();  // NOLINT: the const overload lists only all of them
     if (commands.empty()) return found;
@@ -35,9 +74,15 @@ class CommandConfig final : public CLI::ConfigTOML {
 }  // namespace
 
 ConfigFile::ConfigFile(CLI::App& app) : read_(std::make_shared<std::set<std::string>>()) {
-  app.set_config("--config", "", "Read options from this file (TOML or INI)")->type_name("FILE");
+  option_ = app.set_config("--config", "", "Read options from this file (TOML or INI)")
+                ->check(CLI::Validator(not_a_file, ""))
+                ->type_name("FILE");
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.config_formatter(std::make_shared<CommandConfig>(app, read_));
+}
+
+std::string ConfigFile::path() const {
+  return option_->count() > 0 ? option_->as<std::string>() : std::string();
 }
 
 std::string ConfigFile::origin_of(const CLI::Option& option) const {

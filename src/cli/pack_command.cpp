@@ -26,8 +26,9 @@ struct PackCommand {
     options.output = output;
     options.load = model.load();
     options.packing = packing.request();
-    run_reported(run_options, {options.model, options.output},
-                 [&](Monitor& monitor) { return pack(options, monitor); });
+    JobFiles files{packing.inputs(), {options.output}};
+    files.inputs.insert(files.inputs.begin(), {"model", options.model});
+    run_reported(run_options, files, [&](Monitor& monitor) { return pack(options, monitor); });
   }
 
   ModelOptions model;

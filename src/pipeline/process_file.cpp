@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/error.h"
+#include "files/input_file.h"
 
 namespace aerate {
 namespace {
@@ -18,14 +18,13 @@ constexpr const char* kHint =
     "docs/processes.md describes process files; '--process list' names the built-in ones";
 
 Json parse(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw InputError(
-        fmt::format("{}: the process file cannot be read", path.string()),
-        "a process is a built-in name or the path of a .json file; '--process list' names the former");
-  }
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
   try {
-    return Json::parse(file);
+    return Json::parse(read_file(path, kMostBytes).text());
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("the process file cannot be read: {}", error.what()),
+        "a process is a built-in name or the path of a .json file; '--process list' names the former");
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: not JSON: {}", path.string(), error.what()), kHint);
   }
