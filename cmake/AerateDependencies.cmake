@@ -9,15 +9,7 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(pugixml REQUIRED)
-
-# Not through pkg-config: Debian's lib3MF.pc also asks for libzip's and zlib's linker names, which lib3mf-dev
-# does not bring along and a shared library does not need.
-find_path(LIB3MF_INCLUDE_DIR Model/COM/NMR_DLLInterfaces.h PATH_SUFFIXES lib3mf REQUIRED)
-find_library(LIB3MF_LIBRARY 3MF REQUIRED)
-add_library(lib3mf::lib3mf UNKNOWN IMPORTED)
-set_target_properties(lib3mf::lib3mf PROPERTIES
-  IMPORTED_LOCATION "${LIB3MF_LIBRARY}"
-  INTERFACE_INCLUDE_DIRECTORIES "${LIB3MF_INCLUDE_DIR}")
+find_package(EXPAT REQUIRED)
 
 # Not through libzip's own CMake files: Debian's refer to tools of three further packages.
 find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)

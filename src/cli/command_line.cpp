@@ -1,17 +1,15 @@
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstdio>
 #include <iostream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/config_file.h"
 #include "cli/process_options.h"
+#include "cli/terminal.h"
 #include "core/error.h"
 #include "packing/device_choice.h"
 #include "pipeline/process_choice.h"
@@ -27,7 +25,8 @@ constexpr const char* kFooter =
     "\n"
     "Exit status:\n"
     "    0  done\n"
-    "    1  internal failure, or an output that cannot be written\n"
+    "    1  internal failure, or an output that cannot be written (a result that was written, but not its\n"
+    "       report, is named)\n"
     "    2  usage: options, a configuration file, limits that contradict each other, more than memory holds\n"
     "    3  unreadable input: missing, empty, truncated or not what it claims to be\n"
     "    4  a mesh that cannot be used: open, flat, without an inside\n"
@@ -64,16 +63,6 @@ std::string version_and_devices() {
   return text;
 }
 
-// A full disk or a closed pipe behind standard output shows when it is flushed.
-void require_stdout_written() {
-  errno = 0;
-  std::cout.flush();
-  if (std::fflush(stdout) != 0 || !std::cout) {
-    throw FailureError("standard output cannot be written: " +
-                       std::generic_category().message(errno == 0 ? EIO : errno));
-  }
-}
-
 }  // namespace
 
 void run_command_line(int argc, const char* const* argv) {
@@ -88,7 +77,7 @@ void run_command_line(int argc, const char* const* argv) {
   const ConfigFile config(app);
   add_hollow_command(app, config);
   add_pack_command(app, config);
-  add_inspect_command(app);
+  add_inspect_command(app, config);
   add_slice_command(app, config);
   add_hook_command(app, config);
 

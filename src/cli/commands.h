@@ -14,7 +14,7 @@ class ConfigFile;
 // named; what it throws comes out of the parser.
 void add_hollow_command(CLI::App& app, const ConfigFile& config);
 void add_pack_command(CLI::App& app, const ConfigFile& config);
-void add_inspect_command(CLI::App& app);
+void add_inspect_command(CLI::App& app, const ConfigFile& config);
 void add_slice_command(CLI::App& app, const ConfigFile& config);
 void add_hook_command(CLI::App& app, const ConfigFile& config);
 

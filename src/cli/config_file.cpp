@@ -1,7 +1,12 @@
 #include "cli/config_file.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
 #include <memory>
+#include <sstream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,13 +26,39 @@ std::string why_unreadable(const std::string& path) {
   }
 }
 
+constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+constexpr std::ptrdiff_t kDeepest = 8;
+
+// The program has sections one deep, and CLI11 compares all levels of a name with each other.
+void require_shallow(const std::string& text) {
+  std::istringstream lines(text);
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    // A key ends before its value; a section's name fills its line.
+    const std::string_view name = std::string_view(line).substr(0, line.find('='));
+    if (std::ranges::count(name, '.') >= kDeepest)
+      throw CLI::ConfigError(fmt::format("line {} is nested deeper than {}", number, kDeepest));
+  }
+}
+
+std::string read_config(std::istream& input) {
+  std::string text(kMostBytes + 1, '\0');
+  input.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(input.gcount()));
+  if (text.size() > kMostBytes) throw CLI::ConfigError(fmt::format("more than {} bytes", kMostBytes));
+  require_shallow(text);
+  return text;
+}
+
 class CommandConfig final : public CLI::ConfigTOML {
  public:
   CommandConfig(const CLI::App& app, std::shared_ptr<std::set<std::string>> read)
       : app_(app), read_(std::move(read)) {}
 
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    std::vector<CLI::ConfigItem> found = CLI::ConfigTOML::from_config(input);
+    std::istringstream text(read_config(input));
+    std::vector<CLI::ConfigItem> found = CLI::ConfigTOML::from_config(text);
     const std::vector<CLI::App*> commands =
         const_cast<CLI::App&>(app_).get_subcommands();  // NOLINT: the const overload lists only all of them
     if (commands.empty()) return found;
@@ -49,12 +80,16 @@ class CommandConfig final : public CLI::ConfigTOML {
 
 ConfigFile::ConfigFile(CLI::App& app) : read_(std::make_shared<std::set<std::string>>()) {
   // Looked at before it is opened.
-  app.set_config("--config", "", "Read options from this file (TOML or INI)")
-      ->type_name("FILE")
-      ->check(why_unreadable)
-      ->trigger_on_parse();
+  option_ = app.set_config("--config", "", "Read options from this file (TOML or INI)")
+                ->type_name("FILE")
+                ->check(why_unreadable)
+                ->trigger_on_parse();
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.config_formatter(std::make_shared<CommandConfig>(app, read_));
+}
+
+std::string ConfigFile::path() const {
+  return option_->count() > 0 ? option_->as<std::string>() : std::string();
 }
 
 std::string ConfigFile::origin_of(const CLI::Option& option) const {

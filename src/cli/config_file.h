@@ -12,15 +12,20 @@ class Option;
 namespace aerate::cli {
 
 // --config FILE of the program (TOML or INI). Keys outside any section belong to the command being run. An
-// unknown key is an error.
+// unknown key is an error. What the parser would take long for is refused before it reads: more than 1 MiB, and
+// sections or keys nested deeper than 8.
 class ConfigFile {
  public:
   explicit ConfigFile(CLI::App& app);  // adds the option
+
+  // The file, if one was given.
+  std::string path() const;
 
   // Where the value of an option that was given came from: "command line" or "configuration file".
   std::string origin_of(const CLI::Option& option) const;
 
  private:
+  const CLI::Option* option_;
   std::shared_ptr<std::set<std::string>> read_;  // the options whose values the file gave
 };
 

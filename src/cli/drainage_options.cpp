@@ -30,7 +30,8 @@ DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
                   "(default where it shows least, low and high)")
       ->check(parsed_by(parse_point, "is no place: give three numbers x,y,z"))
       ->type_name("X,Y,Z")
-      ->take_all();
+      ->allow_extra_args(false)  // or it would take the model
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void DrainageOptions::require_no_tubes() const {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/model_options.h"
 #include "pipeline/options.h"
@@ -15,6 +16,7 @@ struct FormOptions {
   FormOptions(CLI::App& command, const ConfigFile& config);
   // Throws UsageError for options that contradict each other.
   FormRequest request(const ModelOptions& model) const;
+  std::vector<NamedInput> inputs() const { return packing_.inputs(); }
 
  private:
   PackingCommandOptions packing_;

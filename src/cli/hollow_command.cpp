@@ -132,8 +132,9 @@ struct HollowCommand {
 
   void run() const {
     const HollowOptions options = to_pipeline();
-    run_reported(run_options, {options.model, options.output},
-                 [&](Monitor& monitor) { return hollow(options, monitor); });
+    JobFiles files{packing.inputs(), {options.output}};
+    files.inputs.insert(files.inputs.begin(), {{"model", options.model}, {"list of spheres", spheres}});
+    run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
   }
 
   ModelOptions model;

@@ -73,9 +73,10 @@ struct HookCommand {
     options.gcode = gcode;
     options.request = form.request(model);
     // Slicers show what a script writes to standard error as an error: notices go into the report alone.
+    JobFiles files{form.inputs(), {options.gcode}};
+    files.inputs.insert(files.inputs.begin(), {"model", options.request.hollow.model});
     run_reported(
-        run_options, {options.gcode, options.request.hollow.model},
-        [&](Monitor& monitor) { return run_hook(options, monitor); }, Verbosity::quiet);
+        run_options, files, [&](Monitor& monitor) { return run_hook(options, monitor); }, Verbosity::quiet);
   }
 
   ModelOptions model;

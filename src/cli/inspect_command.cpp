@@ -10,7 +10,8 @@ namespace aerate::cli {
 namespace {
 
 struct InspectCommand {
-  explicit InspectCommand(CLI::App& command) : model(command), run_options(command) {
+  InspectCommand(CLI::App& command, const ConfigFile& config_file)
+      : config(config_file), model(command), run_options(command) {
     command.add_flag("--self-intersections", self_intersections,
                      "Also look for triangles that intersect each other (slow for large models)");
   }
@@ -21,10 +22,11 @@ struct InspectCommand {
     options.load = model.load();
     options.weld = model.weld;
     if (self_intersections) options.self_intersections = SelfIntersectionSearch::on;
-    run_reported(run_options, {options.model},
+    run_reported(run_options, {{{"model", options.model}, {"configuration file", config.path()}}, {}},
                  [&](Monitor& monitor) { return inspect_model(options, monitor); });
   }
 
+  const ConfigFile& config;
   ModelOptions model;
   RunOptions run_options;
   bool self_intersections = false;
@@ -32,9 +34,9 @@ struct InspectCommand {
 
 }  // namespace
 
-void add_inspect_command(CLI::App& app) {
+void add_inspect_command(CLI::App& app, const ConfigFile& config) {
   CLI::App& command = *app.add_subcommand("inspect", "Tell what is right and wrong with a model");
-  command.callback([job = std::make_shared<InspectCommand>(command)] { job->run(); });
+  command.callback([job = std::make_shared<InspectCommand>(command, config)] { job->run(); });
 }
 
 }  // namespace aerate::cli

@@ -1,3 +1,4 @@
+#include <csignal>
 #include <exception>
 #include <new>
 
@@ -8,6 +9,9 @@
 int main(int argc, char** argv) {
   using aerate::ExitCode;
   ExitCode code = ExitCode::failure;
+  aerate::cli::keep_standard_descriptors();
+  // A limit of the size of files is to be an error of writing, not an end without a word.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     aerate::cli::run_command_line(argc, argv);
     code = ExitCode::done;

@@ -79,7 +79,7 @@ LoadOptions ModelOptions::load() const {
 }
 
 PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile& config)
-    : process_(command, config) {
+    : config_(config), process_(command, config) {
   const std::string stops = capitalised(stoppable_packings());
   std::vector<std::string> methods, summaries;
   for (const PackingMethod& method : packing_methods()) {
@@ -120,6 +120,10 @@ PackingRequest PackingCommandOptions::request() const {
   if (max_voids_) request.stop.max_count = static_cast<std::size_t>(*max_voids_);
   if (target_density_) request.stop.target_density = *target_density_ / 100;
   return request;
+}
+
+std::vector<NamedInput> PackingCommandOptions::inputs() const {
+  return {{"configuration file", config_.path()}, {"process file", process_.file()}};
 }
 
 RunOptions::RunOptions(CLI::App& command) {

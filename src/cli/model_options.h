@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/process_options.h"
 #include "cli/terminal.h"
@@ -14,6 +15,12 @@
 namespace aerate::cli {
 
 // Options that several commands share. Each adds itself to a command and is read after parsing.
+
+// A file that a job reads, and what it is: "model", "configuration file".
+struct NamedInput {
+  std::string what;
+  std::filesystem::path path;  // empty where there is none
+};
 
 // MODEL, --unit, --scale, --weld
 struct ModelOptions {
@@ -37,8 +44,11 @@ struct PackingCommandOptions {
   PackingCommandOptions(CLI::App& command, const ConfigFile& config);
   // Throws UsageError for options that contradict each other.
   PackingRequest request() const;
+  // The files that the options come from.
+  std::vector<NamedInput> inputs() const;
 
  private:
+  const ConfigFile& config_;
   ProcessOptions process_;
   std::string packing_{packing_methods().front().name};
   std::optional<double> max_voids_;

@@ -27,8 +27,9 @@ struct PackCommand {
     options.load = model.load();
     options.weld = model.weld;
     options.packing = packing.request();
-    run_reported(run_options, {options.model, options.output},
-                 [&](Monitor& monitor) { return pack(options, monitor); });
+    JobFiles files{packing.inputs(), {options.output}};
+    files.inputs.insert(files.inputs.begin(), {"model", options.model});
+    run_reported(run_options, files, [&](Monitor& monitor) { return pack(options, monitor); });
   }
 
   ModelOptions model;

@@ -40,6 +40,10 @@ ProcessOptions::ProcessOptions(CLI::App& command, const ConfigFile& config)
       limits_(command, config, {LimitGroup::packing, LimitGroup::ceilings}),
       up_option_(add_up(command, up_)) {}
 
+std::filesystem::path ProcessOptions::file() const {
+  return is_process_file(process_) ? process_ : std::string();
+}
+
 ProcessChoice ProcessOptions::choice() const {
   ProcessChoice choice =
       limits_under(choose_process(process_), limits_.given(),

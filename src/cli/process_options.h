@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 
 #include "cli/config_file.h"
@@ -16,6 +17,9 @@ class ProcessListRequest : public CLI::Success {};
 class ProcessOptions {
  public:
   ProcessOptions(CLI::App& command, const ConfigFile& config);
+
+  // The process file, if it is one of the user's own.
+  std::filesystem::path file() const;
 
   // Throws UsageError for limits that contradict each other or the process.
   ProcessChoice choice() const;

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/model_options.h"
 #include "cli/reports.h"
@@ -18,21 +18,26 @@ struct RenderedReport {
   std::string json;
 };
 
+// What a job reads and writes. No output, nor the report, may replace what is read.
+struct JobFiles {
+  std::vector<NamedInput> inputs;
+  std::vector<std::filesystem::path> outputs;
+};
+
 // As `run_reported`, for a job whose report is rendered.
-void run_rendered(const RunOptions& options, std::initializer_list<std::filesystem::path> files,
+void run_rendered(const RunOptions& options, const JobFiles& files,
                   const std::function<RenderedReport(Monitor&)>& job, Verbosity notices);
 
 // Runs a job under the options that all commands share, and writes its report: as text to standard output, or
 // as JSON there, or as JSON to a file beside the text. That file is opened first, so that a place which cannot
 // be written to is found before the work.
-//   files: what the job reads and writes, which the report must not replace
 //   job: Report(Monitor&)
 //   notices: whether they are shown, if not as the options say
-// Throws UsageError if the JSON would replace one of the files, FailureError if it cannot be written, and what
-// the job throws.
+// Throws UsageError if an output is one of the inputs, by whatever name, or the report's; FailureError if the
+// report cannot be written, naming the outputs that were; and what the job throws.
 template <typename Job>
-void run_reported(const RunOptions& options, std::initializer_list<std::filesystem::path> files,
-                  const Job& job, std::optional<Verbosity> notices = {}) {
+void run_reported(const RunOptions& options, const JobFiles& files, const Job& job,
+                  std::optional<Verbosity> notices = {}) {
   const auto rendered = [&](Monitor& monitor) {
     const auto report = job(monitor);
     return RenderedReport{to_text(report), to_json(report)};

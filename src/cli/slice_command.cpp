@@ -40,7 +40,7 @@ struct SliceCommand {
                     fmt::format("The slicer's settings, once for each file: {}",
                                 fmt::join(of_slicers(&SlicerProfile::settings), "; ")))
         ->type_name("FILE")
-        ->expected(1)
+        ->allow_extra_args(false)  // or it would take the model
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   }
 
@@ -55,8 +55,10 @@ struct SliceCommand {
 
   void run() const {
     const SliceModelOptions options = to_pipeline();
-    run_reported(run_options, {options.request.hollow.model, options.output},
-                 [&](Monitor& monitor) { return slice_model(options, monitor); });
+    JobFiles files{form.inputs(), {options.output}};
+    files.inputs.insert(files.inputs.begin(), {"model", options.request.hollow.model});
+    for (const std::string& file : settings) files.inputs.push_back({"file of settings", file});
+    run_reported(run_options, files, [&](Monitor& monitor) { return slice_model(options, monitor); });
   }
 
   ModelOptions model;

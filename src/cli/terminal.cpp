@@ -1,9 +1,13 @@
 #include "cli/terminal.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <iostream>
+#include <system_error>
 #include <unistd.h>
 
 #include "core/printable.h"
@@ -104,6 +108,22 @@ void TerminalMonitor::clear() {
   if (!bar_allowed_ || drawn_percent_ < 0) return;
   print_to_stderr("\r\x1b[K");
   drawn_percent_ = -1;
+}
+
+void keep_standard_descriptors() {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (fcntl(descriptor, F_GETFD) >= 0) continue;
+    // The lowest number that is free is this one.
+    static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
+void require_stdout_written() {
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::cout) return;
+  throw FailureError("standard output cannot be written: " +
+                     std::generic_category().message(errno == 0 ? EIO : errno));
 }
 
 void print_error(std::string_view what, std::string_view hint) {

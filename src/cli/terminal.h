@@ -37,6 +37,14 @@ class TerminalMonitor final : public Monitor {
   int drawn_percent_ = -1;
 };
 
+// Descriptors 0 to 2 that are closed are opened on nothing, for an output would get their numbers, and with them
+// what is meant for the terminal. Writing to them fails.
+void keep_standard_descriptors();
+
+// Throws FailureError if what was printed to standard output did not get there: a full disk or a closed pipe
+// shows when it is flushed.
+void require_stdout_written();
+
 // What is shown here may hold text from outside: names, lines of files, what a slicer printed.
 
 // "aerate: error: ..." and, if there is one, a line with the hint, on standard error.

@@ -55,7 +55,7 @@ void write_mesh(const Mesh& mesh, const Destination& destination, const MeshForm
 
 // A mesh that `write_mesh` wrote, read from its file: triangles in the order of the file, vertices welded and
 // numbered in order of first use, coordinates to the last bit. A block at a time: assimp would hold several
-// times the size of the file, and rounds decimals. (3MF is read as any model is: lib3mf gives the same bits.)
+// times the size of the file, and rounds decimals. (3MF is read as any model is.)
 // Throws FailureError (3MF: InputError) for a file that is not as it was written; InterruptedError.
 Mesh read_back(const std::filesystem::path& path, const MeshFormat& format, Monitor& monitor);
 

@@ -11,6 +11,8 @@ void check_regular_file(const std::filesystem::path& path) {
   const std::string name = path.string();
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    throw InputError(fmt::format("{}: {}", name, error.message()));
   if (!std::filesystem::exists(status)) throw InputError(fmt::format("{}: no such file", name));
   if (std::filesystem::is_directory(status))
     throw InputError(fmt::format("{}: a directory, not a file", name));
@@ -36,7 +38,7 @@ InputFile file_in_memory(std::string name, std::string_view bytes) {
   return file;
 }
 
-InputFile read_file(const std::filesystem::path& path) {
+InputFile read_file(const std::filesystem::path& path, std::size_t most) {
   check_readable(path);
   InputFile file;
   file.name = path.string();
@@ -44,6 +46,7 @@ InputFile read_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail_to_read(file, "{}", std::generic_category().message(errno));
   file.size = static_cast<std::size_t>(std::filesystem::file_size(path));
+  if (file.size > most) fail_to_read(file, "more than {} bytes", most);
   file.data = std::make_unique_for_overwrite<char[]>(file.size);
   if (!stream.read(file.data.get(), static_cast<std::streamsize>(file.size)))
     fail_to_read(file, "only {} of {} bytes could be read", stream.gcount(), file.size);

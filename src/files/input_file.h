@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <fmt/format.h>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -31,8 +32,9 @@ void check_regular_file(const std::filesystem::path& path);
 // Throws InputError if the file is missing, not a regular file, or empty.
 void check_readable(const std::filesystem::path& path);
 
-// Reads a whole file. Throws InputError as above, or with the system's reason.
-InputFile read_file(const std::filesystem::path& path);
+// Reads a whole file. Throws InputError as above, for more than `most` bytes, or with the system's reason.
+InputFile read_file(const std::filesystem::path& path,
+                    std::size_t most = std::numeric_limits<std::size_t>::max());
 
 inline constexpr const char* kCopyAgain = "export or copy the file again";
 

@@ -43,7 +43,7 @@ struct LoadedModel {
   Mesh mesh;  // all parts of the file, vertices welded where their coordinates are equal, in millimetres
   std::string format;                     // "STL", "3MF", ...
   std::size_t part_count = 1;             // objects in the file that were joined
-  std::vector<std::string> notices = {};  // what is amiss in the file and was read all the same
+  std::vector<std::string> notices = {};  // what was left out or mended, in words for the user
 };
 
 // Reads a model of any of the formats in formats.h; the file name's ending (any case) says which. Triangle

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <random>
+#include <sys/stat.h>
 #include <system_error>
 #include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
@@ -29,8 +30,22 @@ FailureError cannot_write(const fs::path& path, int error) {
   std::string hint;
   if (error == ENOSPC || error == EDQUOT) hint = "free some space or write to another disk";
   if (error == ENOENT || error == ENOTDIR) hint = "create the folder first";
+  if (error == EFBIG) hint = "raise the limit of the size of files (ulimit -f)";
   return FailureError(
       fmt::format("{}: cannot be written: {}", path.string(), std::generic_category().message(error)), hint);
+}
+
+// Where a chain of symbolic links ends, whether or not there is a file.
+fs::path followed(fs::path path) {
+  constexpr int kMostLinks = 40;  // as Linux has it
+  std::error_code error;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(path, error)); ++links) {
+    if (links == kMostLinks) throw cannot_write(path, ELOOP);
+    const fs::path next = fs::read_symlink(path, error);
+    if (error) throw cannot_write(path, error.value());
+    path = path.parent_path() / next;  // which is `next` if that is absolute
+  }
+  return path;
 }
 
 // Throws unless a file may be renamed onto `target`.
@@ -41,11 +56,19 @@ void check_replaceable(const fs::path& target) {
     throw FailureError(fmt::format("{}: is a directory, not a file to write", target.string()),
                        "name a file in it");
   }
+  if (error && !fs::exists(status) && status.type() != fs::file_type::not_found)
+    throw cannot_write(target, error.value());
   if (!fs::exists(status)) return;
   // A rename would replace a device such as /dev/null itself.
   if (!fs::is_regular_file(status))
     throw FailureError(fmt::format("{}: is not a regular file", target.string()));
   if (::access(target.c_str(), W_OK) != 0) throw cannot_write(target, errno);
+  const std::uintmax_t names = fs::hard_link_count(target, error);
+  if (!error && names > 1) {
+    throw FailureError(fmt::format("{}: has {} names (hard links), and the others would keep the old content",
+                                   target.string(), names),
+                       "remove it first, or give another name");
+  }
 }
 
 void flush_to_disk(const fs::path& path, const fs::path& target) {
@@ -57,14 +80,14 @@ void flush_to_disk(const fs::path& path, const fs::path& target) {
 
 }  // namespace
 
-PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
-  std::error_code error;
-  if (fs::is_symlink(fs::symlink_status(target_, error))) {
-    const fs::path resolved = fs::weakly_canonical(target_, error);
-    if (!error) target_ = resolved;
-  }
+PendingFile::PendingFile(fs::path target) : target_(followed(std::move(target))) {
   check_replaceable(target_);
+  // What replaces a file may be as secret as that one was.
+  std::error_code error;
+  create(fs::exists(target_, error) ? 0600 : 0666);
+}
 
+void PendingFile::create(unsigned mode) {
   std::random_device random;
   int reason = EEXIST;
   for (int attempt = 0; attempt < kTemporaryNameAttempts && reason == EEXIST; ++attempt) {
@@ -72,7 +95,7 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
         fmt::format(".{}.aerate-{}-{:x}{}", target_.stem().string().substr(0, kLongestStem), ::getpid(),
                     random(), target_.extension().string());
     path_ = target_.parent_path() / name;
-    const int descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (descriptor >= 0) {
       ::close(descriptor);
       return;
@@ -88,8 +111,19 @@ PendingFile::~PendingFile() {
   fs::remove(path_, ignored);
 }
 
+// Of the file that is replaced. Handing a file to another owner takes privileges, and doing without is no
+// failure.
+void PendingFile::take_over_attributes() const {
+  struct stat replaced {};
+  if (::stat(target_.c_str(), &replaced) != 0) return;
+  if (::chown(path_.c_str(), replaced.st_uid, replaced.st_gid) != 0)
+    static_cast<void>(::chown(path_.c_str(), static_cast<uid_t>(-1), replaced.st_gid) == 0);
+  if (::chmod(path_.c_str(), replaced.st_mode & 0777) != 0) throw cannot_write(target_, errno);
+}
+
 void PendingFile::commit() {
   flush_to_disk(path_, target_);
+  take_over_attributes();
   if (::rename(path_.c_str(), target_.c_str()) != 0) throw cannot_write(target_, errno);
   committed_ = true;
 

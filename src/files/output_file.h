@@ -10,8 +10,10 @@ namespace aerate {
 
 // A file being written beside its target, under a temporary name in the same folder that ends like the
 // target's. It becomes the target only by `commit`; otherwise the destructor removes it. A target that is a
-// symbolic link is followed. Throws FailureError if it cannot be created, or if the target is a directory or
-// anything else that a file must not replace.
+// symbolic link is followed, to a file that is yet to be made too. A file that is replaced hands on its mode
+// and, where the system allows it, its owner and group; a new one's mode is by the umask. Throws FailureError
+// if it cannot be created, or if the target is a directory, has further names (hard links, which would keep
+// the old content), or is anything else that a file must not replace.
 class PendingFile {
  public:
   explicit PendingFile(std::filesystem::path target);
@@ -24,6 +26,9 @@ class PendingFile {
   void commit();  // flushes to disk and renames onto the target, atomically
 
  private:
+  void create(unsigned mode);
+  void take_over_attributes() const;
+
   std::filesystem::path target_, path_;
   bool committed_ = false;
 };

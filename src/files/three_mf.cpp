@@ -81,30 +81,14 @@ void append_triangle(std::string& out, const Triangle& triangle) {
                  triangle[0], triangle[1], triangle[2]);
 }
 
-bool names_a_vertex_twice(const Triangle& t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
-}
-
 // Rows are written as text: a document of a million triangles takes a third of a gigabyte.
 void append_mesh(std::string& out, std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
   constexpr std::size_t kVertexBytes = 56, kTriangleBytes = 46;
   out.reserve(out.size() + positions.size() * kVertexBytes + triangles.size() * kTriangleBytes);
-  auto vertex_count = static_cast<std::uint32_t>(positions.size());
   out += "<mesh>\n<vertices>\n";
   for (const Vec3f position : positions) append_vertex(out, position);
-  for (const Triangle& t : triangles) {
-    if (!names_a_vertex_twice(t)) continue;
-    for (const std::uint32_t vertex : t) append_vertex(out, positions[vertex]);
-  }
   out += "</vertices>\n<triangles>\n";
-  for (const Triangle& t : triangles) {
-    if (names_a_vertex_twice(t)) {
-      append_triangle(out, {vertex_count, vertex_count + 1, vertex_count + 2});
-      vertex_count += 3;
-    } else {
-      append_triangle(out, t);
-    }
-  }
+  for (const Triangle& triangle : triangles) append_triangle(out, triangle);
   out += "</triangles>\n</mesh>\n";
 }
 

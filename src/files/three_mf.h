@@ -28,8 +28,8 @@ struct ThreeMfExtras {
 };
 
 // A 3MF package in millimetres with one object, for any program that reads 3MF. Decimals read back to the
-// same fp32. The format forbids a triangle to name a vertex twice, so triangles without area get vertices of
-// their own. The bytes depend on the arguments alone: no identifiers, dates of 1980.
+// same fp32. (The format forbids a triangle to use a vertex twice, and models that are prepared have none.) The
+// bytes depend on the arguments alone: no identifiers, dates of 1980.
 std::string to_3mf(const Mesh& mesh, const ThreeMfExtras& extras = {});
 
 // The content of one entry, read back from a package. Throws FailureError if it is not there.

@@ -1,37 +1,38 @@
 #include "files/three_mf_package.h"
 
+#include <algorithm>
 #include <array>
-#include <cstdint>
-#include <memory>
+#include <exception>
 #include <pugixml.hpp>
-#include <sstream>
-#include <string_view>
-#include <vector>
 #include <zip.h>
+
+#include "files/text_scan.h"
+#include "files/three_mf.h"
 
 namespace aerate {
 namespace {
 
-constexpr const char* kRelations = "_rels/.rels";
+constexpr std::size_t kMostEntries = 20000;
+constexpr std::uint64_t kMostUnpacked = std::uint64_t{4} << 30;  // bytes of one part
+// Deflate makes a thousand bytes of one at most; models have been seen to make twenty.
+constexpr std::uint64_t kSmallUnpacked = std::uint64_t{256} << 20, kMostPerPackedByte = 250;
+constexpr std::uint64_t kMostDocument = std::uint64_t{16} << 20;  // bytes of a part that is held as a whole
 
-struct Discard {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
-};
-using Archive = std::unique_ptr<zip_t, Discard>;
+constexpr std::string_view kModelRelation = "/3dmodel";  // how the type of the relation to it ends
 
 struct Close {
   void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
 using ArchivedFile = std::unique_ptr<zip_file_t, Close>;
 
-Archive open_archive(const InputFile& file) {
+zip_t* open_archive(const InputFile& file) {
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* const source = zip_source_buffer_create(file.data.get(), file.size, 0, &error);
-  Archive archive(source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY, &error));
-  const std::string reason = archive ? std::string() : zip_error_strerror(&error);
+  zip_t* const archive = source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY, &error);
+  const std::string reason = archive != nullptr ? std::string() : zip_error_strerror(&error);
   zip_error_fini(&error);
-  if (archive) return archive;
+  if (archive != nullptr) return archive;
   zip_source_free(source);
   throw InputError(
       fmt::format("{}: a zip archive, as 3MF files are, but its table of contents at the end cannot "
@@ -40,132 +41,148 @@ Archive open_archive(const InputFile& file) {
       kCopyAgain);
 }
 
-// The parts of a package that make up the model; damage to a picture in it does no harm.
-bool is_needed(std::string_view entry) {
-  return entry.ends_with(".model") || entry.ends_with(".rels") || entry == "[Content_Types].xml";
+// As names are looked for: no first slash, slashes that point forward, small letters.
+std::string key_of(std::string_view name) {
+  std::string key(name.substr(std::min(name.find_first_not_of("/\\"), name.size())));
+  for (char& c : key) c = c == '\\' ? '/' : to_lower_ascii(c);
+  return key;
 }
 
-// Calls f(bytes) for each block of an entry.
-template <typename F>
-void read_through(zip_t* archive, std::uint64_t index, std::string_view entry, const InputFile& package,
-                  const F& f) {
-  const auto fail = [&](const char* reason) {
-    throw InputError(
-        fmt::format("{}: '{}' in the 3MF package cannot be read: {}", package.name, entry, reason),
-        kCopyAgain);
-  };
-  const ArchivedFile file(zip_fopen_index(archive, index, 0));
-  if (!file) fail(zip_strerror(archive));
-  std::array<char, 1 << 16> block;
-  zip_int64_t count = 0;
-  while ((count = zip_fread(file.get(), block.data(), block.size())) > 0)
-    f(std::string_view(block.data(), static_cast<std::size_t>(count)));
-  if (count < 0) fail(zip_file_strerror(file.get()));
+// "My%20Model" is "My Model" in a relation.
+std::string without_escapes(std::string_view target) {
+  std::string name;
+  while (!target.empty()) {
+    unsigned char byte = 0;
+    const char* const end = target.data() + std::min<std::size_t>(target.size(), 3);
+    if (target.size() >= 3 && target[0] == '%' &&
+        std::from_chars(target.data() + 1, end, byte, 16).ptr == end) {
+      name += static_cast<char>(byte);
+      target.remove_prefix(3);
+    } else {
+      name += target.front();
+      target.remove_prefix(1);
+    }
+  }
+  return name;
 }
 
-// An entry as a document; empty if it is not there, or no XML: the importer says what it needs.
-pugi::xml_document document_in(zip_t* archive, const char* entry, const InputFile& package) {
+void require_modest(const zip_stat_t& facts, std::string_view part, const InputFile& file) {
+  const bool is_bomb = facts.size > kSmallUnpacked && facts.size / kMostPerPackedByte > facts.comp_size;
+  if (facts.size <= kMostUnpacked && !is_bomb) return;
+  fail_to_read(file, "'{}' in the 3MF package would unpack from {} bytes to {}, which is too much", part,
+               facts.comp_size, facts.size);
+}
+
+pugi::xml_document parsed(const std::string& text) {
   pugi::xml_document document;
-  const zip_int64_t index = zip_name_locate(archive, entry, 0);
-  if (index < 0) return document;
-  std::string text;
-  read_through(archive, static_cast<std::uint64_t>(index), entry, package,
-               [&](std::string_view bytes) { text += bytes; });
   document.load_buffer(text.data(), text.size());
   return document;
 }
 
-std::string text_of(const pugi::xml_document& document) {
-  std::ostringstream stream;
-  document.save(stream, "", pugi::format_raw, pugi::encoding_utf8);
-  return std::move(stream).str();
-}
-
-// Puts another entry in place of one that the package has.
-void replace_entry(InputFile& file, const char* entry, const std::string& content) {
-  const auto require = [&](bool done) {
-    if (!done) fail_to_read(file, "'{}' in the 3MF package cannot be mended", entry);
-  };
-  struct Free {
-    void operator()(zip_source_t* source) const { zip_source_free(source); }
-  };
-  const std::unique_ptr<zip_source_t, Free> buffer(
-      zip_source_buffer_create(file.data.get(), file.size, 0, nullptr));
-  require(buffer != nullptr);
-  zip_source_keep(buffer.get());
-  Archive archive(zip_open_from_source(buffer.get(), 0, nullptr));
-  if (!archive) zip_source_free(buffer.get());
-  require(archive != nullptr);
-  const zip_int64_t index = zip_name_locate(archive.get(), entry, 0);
-  zip_source_t* const source = zip_source_buffer(archive.get(), content.data(), content.size(), 0);
-  const bool replaced =
-      index >= 0 && zip_file_replace(archive.get(), static_cast<zip_uint64_t>(index), source, 0) == 0;
-  if (!replaced) zip_source_free(source);
-  require(replaced && zip_close(archive.get()) == 0);
-  static_cast<void>(archive.release());  // gone with closing it
-  zip_stat_t facts;
-  zip_stat_init(&facts);
-  require(zip_source_stat(buffer.get(), &facts) == 0 && zip_source_open(buffer.get()) == 0);
-  auto mended = std::make_unique_for_overwrite<char[]>(facts.size);
-  const zip_int64_t count = zip_source_read(buffer.get(), mended.get(), facts.size);
-  zip_source_close(buffer.get());
-  require(count >= 0 && static_cast<std::size_t>(count) == facts.size);
-  file.data = std::move(mended);
-  file.size = facts.size;
-}
-
-// The package's relations without those to parts that are missing, if there are such: PrusaSlicer's command
-// line names a thumbnail that it does not make, and lib3mf then refuses the whole.
-std::string without_missing_parts(zip_t* archive, const InputFile& package) {
-  pugi::xml_document relations = document_in(archive, kRelations, package);
-  std::vector<pugi::xml_node> missing;
-  for (const pugi::xml_node relation : relations.child("Relationships").children("Relationship")) {
-    std::string_view target = relation.attribute("Target").as_string();
-    if (target.starts_with('/')) target.remove_prefix(1);
-    const bool external = std::string_view(relation.attribute("TargetMode").as_string()) == "External";
-    if (!external && zip_name_locate(archive, std::string(target).c_str(), ZIP_FL_NOCASE) < 0)
-      missing.push_back(relation);
-  }
-  if (missing.empty()) return {};
-  for (const pugi::xml_node relation : missing) relations.child("Relationships").remove_child(relation);
-  return text_of(relations);
-}
-
 }  // namespace
 
-void check_3mf(InputFile& file) {
-  if (!file.text().starts_with("PK"))
-    fail_to_read(file, "not a 3MF file, since it does not begin as a zip archive does");
-  const Archive archive = open_archive(file);
-  bool has_model = false;
-  const auto count = static_cast<std::uint64_t>(zip_get_num_entries(archive.get(), 0));
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const char* const found = zip_get_name(archive.get(), i, 0);
-    const std::string_view entry = found == nullptr ? "" : found;
-    if (!is_needed(entry)) continue;
-    has_model = has_model || entry.ends_with(".model");
-    read_through(archive.get(), i, entry, file, [](std::string_view) {});
-  }
-  if (!has_model) {
-    throw InputError(
-        fmt::format("{}: not a 3MF file: a zip archive without a model ({} files)", file.name, count),
-        "3MF files hold one that ends in .model; unpack other archives first");
-  }
-  const std::string relations = without_missing_parts(archive.get(), file);
-  if (!relations.empty()) replace_entry(file, kRelations, relations);
+void ThreeMfPackage::Discard::operator()(zip* archive) const {
+  zip_discard(archive);
 }
 
-void require_model_parts_only(const InputFile& file, const std::vector<VolumeList>& lists) {
-  const Archive archive = open_archive(file);
+ThreeMfPackage::ThreeMfPackage(const InputFile& file) : file_(file) {
+  if (!file.text().starts_with("PK"))
+    fail_to_read(file, "not a 3MF file, since it does not begin as a zip archive does");
+  archive_.reset(open_archive(file));
+  const auto count = static_cast<std::uint64_t>(zip_get_num_entries(archive_.get(), 0));
+  if (count > kMostEntries) fail_to_read(file, "a zip archive of more than {} files", kMostEntries);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const char* const name = zip_get_name(archive_.get(), i, 0);
+    if (name != nullptr) entries_.emplace(key_of(name), i);
+  }
+}
+
+std::optional<std::uint64_t> ThreeMfPackage::find(std::string_view part) const {
+  const auto found = entries_.find(key_of(part));
+  return found == entries_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void ThreeMfPackage::read(std::string_view part, const std::function<void(std::string_view)>& f) const {
+  const auto fail = [&](const char* reason) {
+    throw InputError(fmt::format("{}: '{}' in the 3MF package cannot be read: {}", file_.name, part, reason),
+                     kCopyAgain);
+  };
+  const auto index = find(part);
+  if (!index) fail("it is missing");
+  zip_stat_t facts;
+  zip_stat_init(&facts);
+  if (zip_stat_index(archive_.get(), *index, 0, &facts) != 0) fail(zip_strerror(archive_.get()));
+  require_modest(facts, part, file_);
+  const ArchivedFile opened(zip_fopen_index(archive_.get(), *index, 0));
+  if (!opened) fail(zip_strerror(archive_.get()));
+  std::array<char, 1 << 16> block;
+  std::exception_ptr refused;
+  std::uint64_t total = 0;
+  zip_int64_t count = 0;
+  while ((count = zip_fread(opened.get(), block.data(), block.size())) > 0) {
+    total += static_cast<std::uint64_t>(count);
+    if (total > facts.size) fail("it is longer than the archive says");
+    if (refused) continue;
+    try {
+      f(std::string_view(block.data(), static_cast<std::size_t>(count)));
+    } catch (const InputError&) {
+      refused = std::current_exception();
+    }
+  }
+  if (count < 0) fail(zip_file_strerror(opened.get()));
+  if (refused) std::rethrow_exception(refused);
+}
+
+std::string ThreeMfPackage::text_of(std::string_view part) const {
+  std::string text;
+  read(part, [&](std::string_view bytes) {
+    if (text.size() + bytes.size() > kMostDocument)
+      fail_to_read(file_, "'{}' in the 3MF package has more than {} bytes", part, kMostDocument);
+    text += bytes;
+  });
+  return text;
+}
+
+// Empty if there is none, or if it names a part that is missing.
+std::string ThreeMfPackage::model_by_relation() const {
+  constexpr const char* kRelations = "_rels/.rels";
+  if (!has(kRelations)) return {};
+  const pugi::xml_document relations = parsed(text_of(kRelations));
+  for (const pugi::xml_node relation : relations.child("Relationships").children("Relationship")) {
+    if (!std::string_view(relation.attribute("Type").as_string()).ends_with(kModelRelation)) continue;
+    const std::string target = without_escapes(relation.attribute("Target").as_string());
+    if (has(target)) return target;
+  }
+  return {};
+}
+
+std::string ThreeMfPackage::model() const {
+  const std::string named = model_by_relation();
+  if (!named.empty()) return key_of(named) == key_of(kThreeMfModel) ? kThreeMfModel : named;
+  if (has(kThreeMfModel)) return kThreeMfModel;
+  std::vector<std::string> models;
+  for (const auto& [key, index] : entries_)
+    if (key.ends_with(".model")) models.emplace_back(zip_get_name(archive_.get(), index, 0));
+  if (models.size() == 1) return models.front();
+  if (models.empty()) {
+    throw InputError(fmt::format("{}: not a 3MF file: a zip archive without a model ({} files)", file_.name,
+                                 entries_.size()),
+                     "3MF files hold one that ends in .model; unpack other archives first");
+  }
+  fail_to_read(file_, "{} models in the 3MF package, and nothing says which of them it is", models.size());
+}
+
+void ThreeMfPackage::require_model_parts_only(const std::vector<VolumeList>& lists) const {
   for (const VolumeList& list : lists) {
-    const pugi::xml_document document = document_in(archive.get(), list.entry, file);
+    if (!has(list.entry)) continue;
+    const pugi::xml_document document = parsed(text_of(list.entry));
     for (const pugi::xml_node object : document.child("config").children("object")) {
       for (const pugi::xml_node volume : object.children(list.node)) {
         const auto kind = list.other_kind(volume);
         if (!kind) continue;
         throw InputError(
             fmt::format(
-                "{}: a slicer's project with a volume that is not part of the model ({} '{}')", file.name,
+                "{}: a slicer's project with a volume that is not part of the model ({} '{}')", file_.name,
                 *kind,
                 volume.find_child_by_attribute("metadata", "key", "name").attribute("value").as_string()),
             "take such volumes out, or export the model alone (in PrusaSlicer: File, Export, Export Plate as "

@@ -1,17 +1,54 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "files/input_file.h"
 #include "files/load.h"
 
+struct zip;
+
 namespace aerate {
 
-// Looks through a 3MF package before lib3mf reads it: a whole zip archive that holds a model, with the
-// checksums of what is needed of it. Takes out what the package says to have and has not. Throws InputError.
-void check_3mf(InputFile& file);
+// The zip archive of a 3MF file, in which parts are found by their names in any case and with either slash.
+// What an archive may unpack to is limited (docs/meshes.md): a few bytes can stand for gigabytes.
+class ThreeMfPackage {
+ public:
+  // `file` has to stay. Throws InputError for what is no whole zip archive.
+  explicit ThreeMfPackage(const InputFile& file);
 
-// Throws InputError for a package that has one of these lists with a volume that is not part of the model.
-void require_model_parts_only(const InputFile& file, const std::vector<VolumeList>& lists);
+  // The part that the package says to be its model, or the only one that can be.
+  std::string model() const;
+
+  // Whether there is a part of this name.
+  bool has(std::string_view part) const { return find(part).has_value(); }
+
+  // Calls f(bytes) for each block of a part. What f throws is thrown when the rest of the part is whole: else
+  // its damage is the reason.
+  void read(std::string_view part, const std::function<void(std::string_view)>& f) const;
+
+  // Throws InputError if one of these lists has a volume that is not part of the model.
+  void require_model_parts_only(const std::vector<VolumeList>& lists) const;
+
+ private:
+  struct Discard {
+    void operator()(zip* archive) const;
+  };
+
+  std::optional<std::uint64_t> find(std::string_view part) const;
+  std::string text_of(std::string_view part) const;
+  std::string model_by_relation() const;
+
+  const InputFile& file_;
+  std::unique_ptr<zip, Discard> archive_;
+  std::map<std::string, std::uint64_t, std::less<>> entries_;  // by their names without case
+};
 
 }  // namespace aerate

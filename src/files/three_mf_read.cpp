@@ -1,6 +1,6 @@
-#include <Model/COM/NMR_DLLInterfaces.h>
-#include <array>
-#include <string_view>
+#include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "files/formats.h"
@@ -8,163 +8,187 @@
 #include "files/own_file.h"
 #include "files/part_writer.h"
 #include "files/three_mf.h"
+#include "files/three_mf_model.h"
 #include "files/three_mf_package.h"
 
 namespace aerate {
 namespace {
 
 // What no sane file exceeds: a file can nest components so that a few bytes become endlessly many parts.
-constexpr std::size_t kMaxParts = 100000;
-constexpr int kMaxDepth = 64;
+constexpr std::size_t kMostParts = 100000;  // objects that are shown, each as often as it is
+constexpr int kDeepest = 64;                // components in components
+// Triangles that are shown, unless the file itself holds more.
+constexpr std::size_t kMostTrianglesShown = std::size_t{1} << 25;
 
-// An object of lib3mf's C interface.
-class Handle {
- public:
-  Handle() = default;
-  ~Handle() {
-    if (object_ != nullptr) NMR::lib3mf_release(object_);
-  }
-  Handle(Handle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
-  Handle& operator=(Handle&&) = delete;
-
-  NMR::PLib3MFBase* get() const { return object_; }
-  NMR::PLib3MFBase** receive() { return &object_; }
-
- private:
-  NMR::PLib3MFBase* object_ = nullptr;
+// What an object shows, with all that its components do.
+struct Extent {
+  std::size_t parts = 0, triangles = 0;
+  int depth = 0;  // of components
 };
 
-UnitOfFile unit_of_file(DWORD unit, const InputFile& file) {
-  switch (unit) {
-    case NMR::MODELUNIT_MICROMETER:
-      return {"micron", 0.001};
-    case NMR::MODELUNIT_MILLIMETER:
-      return {"millimeter", 1};
-    case NMR::MODELUNIT_CENTIMETER:
-      return {"centimeter", 10};
-    case NMR::MODELUNIT_INCH:
-      return {"inch", 25.4};
-    case NMR::MODELUNIT_FOOT:
-      return {"foot", 304.8};
-    case NMR::MODELUNIT_METER:
-      return {"meter", 1000};
-    default:
-      fail_to_read(file, "unknown unit ({})", unit);
-  }
-}
-
-Affine to_affine(const NMR::MODELTRANSFORM& transform) {
-  using Fields = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
-  static_assert(sizeof(transform.m_fFields) == sizeof(Fields));
-  return Affine(Eigen::Map<const Fields>(&transform.m_fFields[0][0]).cast<double>());
-}
+// An object by the model part that holds it; the path is empty for the package's model.
+struct Found {
+  const std::string* path;
+  const ModelObject* object;
+};
 
 class Reader3mf {
  public:
-  explicit Reader3mf(const InputFile& file) : file_(file) {
-    require(NMR::lib3mf_createmodel(model_.receive()), model_);
-    Handle reader;
-    require(NMR::lib3mf_model_queryreader(model_.get(), "3mf", reader.receive()), model_);
-    require(
-        NMR::lib3mf_reader_readfrombuffer(reader.get(), reinterpret_cast<BYTE*>(file.data.get()), file.size),
-        reader);
+  explicit Reader3mf(const InputFile& file) : file_(file), package_(file), model_(package_.model()) {}
+
+  void require_model_parts_only(const std::vector<VolumeList>& lists) const {
+    package_.require_model_parts_only(lists);
   }
 
-  UnitOfFile unit() const {
-    DWORD unit = 0;
-    require(NMR::lib3mf_model_getunit(model_.get(), &unit), model_);
-    return unit_of_file(unit, file_);
-  }
-
-  LoadedModel build(double factor) const {
-    LoadedModel imported{.mesh = {}, .format = {}, .part_count = 0};
+  LoadedModel build(const LoadOptions& options) {
+    const ModelPart& model = part({});
+    const double factor = millimetres_per_unit(options, model.unit, file_.name);
+    require_something_to_print(model);
+    require_modest(model);
+    LoadedModel loaded{.mesh = {}, .format = {}, .part_count = 0, .notices = {}};
     Welder welder(0);
-    Handle items;
-    require(NMR::lib3mf_model_getbuilditems(model_.get(), items.receive()), model_);
-    for (;;) {
-      BOOL more = 0;
-      require(NMR::lib3mf_builditemiterator_movenext(items.get(), &more), items);
-      if (!more) break;
-      Handle item, object;
-      require(NMR::lib3mf_builditemiterator_getcurrent(items.get(), item.receive()), items);
-      require(NMR::lib3mf_builditem_getobjectresource(item.get(), object.receive()), item);
-      NMR::MODELTRANSFORM transform{};
-      require(NMR::lib3mf_builditem_getobjecttransform(item.get(), &transform), item);
-      add_object(object, to_affine(transform), factor, 0, welder, imported);
-    }
-    imported.mesh = std::move(welder).finish();
-    return imported;
+    for (const ObjectReference& item : model.items)
+      add_object(find({}, item), item.transform, factor, welder, loaded);
+    loaded.mesh = std::move(welder).finish();
+    if (loaded.mesh.triangles.empty()) fail_without_triangles();
+    loaded.notices = notices(model);
+    return loaded;
   }
 
  private:
-  void add_object(const Handle& object, const Affine& transform, double factor, int depth, Welder& welder,
-                  LoadedModel& imported) const {
-    if (depth > kMaxDepth) fail_to_read(file_, "components nested deeper than {}", kMaxDepth);
-    DWORD type = 0;
-    require(NMR::lib3mf_object_gettype(object.get(), &type), object);
-    // Supports, surfaces without volume and the like are not the model.
-    if (type != NMR::MODELOBJECTTYPE_MODEL) return;
-    BOOL is_mesh = 0;
-    require(NMR::lib3mf_object_ismeshobject(object.get(), &is_mesh), object);
-    if (is_mesh) {
-      add_mesh(object, transform, factor, welder, imported);
+  // Model parts are read when something of them is shown.
+  const ModelPart& part(const std::string& path) {
+    const auto [place, is_new] = parts_.try_emplace(path);
+    if (!is_new) return place->second;
+    const std::string& name = path.empty() ? model_ : path;
+    const std::string where = fmt::format("{}: '{}' in the 3MF package", file_.name, name);
+    place->second = read_model_part(where, [&](const auto& block) { package_.read(name, block); });
+    if (place->second.unit.millimetres != part({}).unit.millimetres)
+      fail_to_read(file_, "parts of the 3MF package are in different units");
+    for (const auto& [id, object] : place->second.objects) triangles_held_ += object.mesh.triangles.size();
+    return place->second;
+  }
+
+  [[noreturn]] void fail_at(const std::string& path, const ObjectReference& named,
+                            const std::string& why) const {
+    fail_to_read(file_, "'{}' in the 3MF package, line {}: {}", path.empty() ? model_ : path, named.line,
+                 why);
+  }
+
+  // The object that is named in the part `path`.
+  Found find(const std::string& path, const ObjectReference& named) {
+    const std::string& in = named.path.empty() ? path : named.path;
+    if (!named.path.empty() && !package_.has(in))
+      fail_at(path, named, fmt::format("object {} is in a part that is missing", named.id));
+    const ModelPart& holder = part(in);
+    const auto object = holder.objects.find(named.id);
+    if (object == holder.objects.end()) fail_at(path, named, fmt::format("there is no object {}", named.id));
+    return {&parts_.find(in)->first, &object->second};
+  }
+
+  // Whether an object is of the model; supports, surfaces without volume and the like are not.
+  static bool is_model(const ModelObject& object) { return object.type == "model"; }
+
+  void require_something_to_print(const ModelPart& model) const {
+    if (!model.items.empty()) return;
+    if (model.items_not_printed > 0)
+      fail_to_read(file_, "nothing to print: all {} items of its build are marked as not to be printed",
+                   model.items_not_printed);
+    fail_to_read(file_, "nothing to print: no triangles, since its build has no items");
+  }
+
+  // Judges what would be shown before anything is: in time by what the file holds, not by what it shows.
+  void require_modest(const ModelPart& model) {
+    Extent all;
+    for (const ObjectReference& item : model.items) add_extent(all, {}, item);
+    if (all.triangles > std::max(kMostTrianglesShown, triangles_held_))
+      fail_to_read(file_, "components that make more than {} triangles of {}", kMostTrianglesShown,
+                   triangles_held_);
+  }
+
+  void add_extent(Extent& sum, const std::string& path, const ObjectReference& named) {
+    const Found found = find(path, named);
+    const Extent shown = extent(found, path, named);
+    sum.parts += shown.parts;
+    sum.triangles += shown.triangles;
+    sum.depth = std::max(sum.depth, shown.depth + 1);
+    if (sum.parts > kMostParts) fail_to_read(file_, "more than {} parts", kMostParts);
+    if (sum.depth > kDeepest) fail_to_read(file_, "components nested deeper than {}", kDeepest);
+  }
+
+  Extent extent(const Found& found, const std::string& path, const ObjectReference& named) {
+    if (const auto known = extents_.find(found.object); known != extents_.end()) return known->second;
+    if (!open_.insert(found.object).second)
+      fail_at(path, named, fmt::format("object {} is a component of itself", named.id));
+    if (open_.size() > kDeepest + 1) fail_to_read(file_, "components nested deeper than {}", kDeepest);
+    Extent all{.parts = 1, .triangles = found.object->mesh.triangles.size(), .depth = 0};
+    for (const ObjectReference& component : found.object->components) add_extent(all, *found.path, component);
+    open_.erase(found.object);
+    return extents_[found.object] = all;
+  }
+
+  void add_object(const Found& found, const Affine& transform, double factor, Welder& welder,
+                  LoadedModel& loaded) {
+    const ModelObject& object = *found.object;
+    if (!is_model(object)) {
+      left_out_.insert({object.type, object.id});
       return;
     }
-    DWORD count = 0;
-    require(NMR::lib3mf_componentsobject_getcomponentcount(object.get(), &count), object);
-    for (DWORD i = 0; i < count; ++i) {
-      Handle component, child;
-      require(NMR::lib3mf_componentsobject_getcomponent(object.get(), i, component.receive()), object);
-      require(NMR::lib3mf_component_getobjectresource(component.get(), child.receive()), component);
-      NMR::MODELTRANSFORM own{};
-      require(NMR::lib3mf_component_gettransform(component.get(), &own), component);
-      add_object(child, transform * to_affine(own), factor, depth + 1, welder, imported);
+    for (const ObjectReference& component : object.components)
+      add_object(find(*found.path, component), transform * component.transform, factor, welder, loaded);
+    if (!object.components.empty()) return;
+    if (object.mesh.triangles.empty()) {
+      empty_.insert(object.id);
+      return;
     }
-  }
-
-  void add_mesh(const Handle& object, const Affine& transform, double factor, Welder& welder,
-                LoadedModel& imported) const {
-    if (++imported.part_count > kMaxParts) fail_to_read(file_, "more than {} parts", kMaxParts);
-    DWORD vertex_count = 0, triangle_count = 0;
-    require(NMR::lib3mf_meshobject_getvertexcount(object.get(), &vertex_count), object);
-    require(NMR::lib3mf_meshobject_gettrianglecount(object.get(), &triangle_count), object);
-    if (triangle_count == 0) return;
-    std::vector<NMR::MODELMESHVERTEX> vertices(vertex_count);
-    std::vector<NMR::MODELMESHTRIANGLE> triangles(triangle_count);
-    require(NMR::lib3mf_meshobject_getvertices(object.get(), vertices.data(), vertex_count, nullptr), object);
-    require(
-        NMR::lib3mf_meshobject_gettriangleindices(object.get(), triangles.data(), triangle_count, nullptr),
-        object);
+    ++loaded.part_count;
     PartWriter part(welder, transform, factor, file_.name);
-    const auto corner = [&](DWORD index) {
-      if (index >= vertex_count) fail_to_read(file_, "a triangle uses a vertex that is not there");
-      const auto& p = vertices[index].m_fPosition;
-      return Vec3f{p[0], p[1], p[2]};
-    };
-    for (const NMR::MODELMESHTRIANGLE& triangle : triangles) {
-      part.add_triangle(corner(triangle.m_nIndices[0]), corner(triangle.m_nIndices[1]),
-                        corner(triangle.m_nIndices[2]));
-    }
+    const std::vector<Vec3f>& p = object.mesh.positions;
+    for (const auto& [a, b, c] : object.mesh.triangles) part.add_triangle(p[a], p[b], p[c]);
   }
 
-  void require(LIB3MFRESULT result, const Handle& object) const {
-    if (result == 0) return;
-    DWORD code = 0;
-    LPCSTR message = nullptr;
-    if (object.get() != nullptr) NMR::lib3mf_getlasterror(object.get(), &code, &message);
-    fail_to_read(file_, "cannot be read as 3MF: {}",
-                 message != nullptr && *message != '\0' ? message : "not a 3MF package");
+  [[noreturn]] void fail_without_triangles() const {
+    if (left_out_.empty()) fail_to_read(file_, "no triangles");
+    const auto& [type, id] = *left_out_.begin();
+    throw InputError(
+        fmt::format("{}: no triangles of a model: object {} is of type '{}'", file_.name, id, type),
+        "in a 3MF the objects that are solid are of type 'model'");
+  }
+
+  std::vector<std::string> notices(const ModelPart& model) const {
+    std::vector<std::string> said;
+    if (model.items_not_printed > 0) {
+      said.push_back(fmt::format("{} of {} items of the build are not to be printed, and left out",
+                                 model.items_not_printed, model.items_not_printed + model.items.size()));
+    }
+    const auto others = [](std::size_t count) {
+      return count > 1 ? fmt::format(" (and so for {} more)", count - 1) : std::string();
+    };
+    if (!left_out_.empty()) {
+      const auto& [type, id] = *left_out_.begin();
+      said.push_back(fmt::format("object {} is of type '{}', no part of the model, and left out{}", id, type,
+                                 others(left_out_.size())));
+    }
+    if (!empty_.empty())
+      said.push_back(fmt::format("object {} has no triangles{}", *empty_.begin(), others(empty_.size())));
+    return said;
   }
 
   const InputFile& file_;
-  Handle model_;
+  ThreeMfPackage package_;
+  std::string model_;
+  std::map<std::string, ModelPart> parts_;  // by path; places stay when others are added
+  std::size_t triangles_held_ = 0;
+  std::map<const ModelObject*, Extent> extents_;
+  std::set<const ModelObject*> open_;  // whose components are being looked at
+  std::set<std::pair<std::string, std::uint32_t>> left_out_;
+  std::set<std::uint32_t> empty_;
 };
 
 LoadedModel read_3mf(InputFile& file, const LoadOptions& options) {
-  check_3mf(file);
-  require_model_parts_only(file, options.volume_lists);
-  const Reader3mf reader(file);
-  return reader.build(millimetres_per_unit(options, reader.unit(), file.name));
+  Reader3mf reader(file);
+  reader.require_model_parts_only(options.volume_lists);
+  return reader.build(options);
 }
 
 void write_3mf(const Mesh& mesh, OutputFile& file) {

@@ -36,6 +36,11 @@ std::optional<Crack> find_crack(const Mesh& mesh);
 // are there twice go where edges then agree better; others stay. Triangles keep their order.
 Repaired unite_doubles(Mesh mesh);
 
+// Leaves out triangles that use a vertex twice: they bound nothing, and slicers see open edges at them. (Those
+// without area whose vertices differ close T-junctions, and stay.) Vertices are numbered by first use again.
+// A mesh of nothing else stays as it is.
+Repaired without_repeated_vertices(Mesh mesh);
+
 // Turns single triangles so that those with a common edge of two triangles run along it in opposite
 // directions; the lesser part of a patch is turned. A shell that cannot be made consistent (like a Moebius
 // strip, or at edges of more than two triangles) stays as it is, with a notice. Triangles keep their order; a

@@ -164,7 +164,6 @@ HookReport run_hook(const HookOptions& options, Monitor& monitor) {
                           .gcode = options.gcode,
                           .hollow = std::nullopt});
   AnnouncedFile pending(options.gcode, log);
-  fs::permissions(pending.file().path(), fs::status(options.gcode).permissions());
   const PrivateFolder scratch(log);
   if (options.request.hollow.model.empty()) {
     report.remark = "no model was given";

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "mesh/lost_surface.h"
 #include "mesh/repair.h"
+#include "mesh/topology.h"
 #include "packing/verify.h"
 #include "pipeline/memory.h"
 
@@ -163,6 +164,8 @@ void mend(PreparedModel& model, const SurfacePolicy& policy, Monitor& monitor) {
     Repaired closed = close_cracks(std::move(model.mesh), weld_tolerance(model.inspection, policy));
     adopt(model, std::move(closed), monitor);
   }
+  if (std::ranges::any_of(model.mesh.triangles, has_repeated_vertex))
+    adopt(model, without_repeated_vertices(std::move(model.mesh)), monitor);
   if (model.inspection.duplicate_triangles > 0) adopt(model, unite_doubles(std::move(model.mesh)), monitor);
   if (model.inspection.misoriented_edges > 0)
     adopt(model, orient_consistently(std::move(model.mesh)), monitor);

@@ -55,9 +55,12 @@ void require_printable(const ProcessChoice& choice, Limit limit, Limit least) {
 
 }  // namespace
 
+bool is_process_file(const std::string& name_or_file) {
+  return name_or_file.ends_with(".json") || name_or_file.find('/') != std::string::npos;
+}
+
 Process choose_process(const std::string& name_or_file) {
-  if (name_or_file.ends_with(".json") || name_or_file.find('/') != std::string::npos)
-    return read_process_file(name_or_file);
+  if (is_process_file(name_or_file)) return read_process_file(name_or_file);
   const Process* process = find_process(name_or_file);
   if (process == nullptr) {
     throw UsageError(fmt::format("unknown process \"{}\"", name_or_file),

@@ -26,7 +26,10 @@ struct ProcessChoice {
   PrintDirection direction = {};
 };
 
-// The built-in process of this name or, for a name that ends in .json or holds a slash, that of the file.
+// Whether --process names a file: it ends in .json or holds a slash.
+bool is_process_file(const std::string& name_or_file);
+
+// The built-in process of this name, or that of the file.
 // Throws UsageError for an unknown name, and what read_process_file throws.
 Process choose_process(const std::string& name_or_file);
 

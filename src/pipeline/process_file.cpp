@@ -19,17 +19,15 @@ constexpr const char* kHint =
     "docs/processes.md describes process files; '--process list' names the built-in ones";
 
 Json parse(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw InputError(
-        fmt::format("{}: the process file cannot be read", path.string()),
-        "a process is a built-in name or the path of a .json file; '--process list' names the former");
-  }
-  const InputFile file = read_file(path);
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
   try {
-    return Json::parse(file.text());
-  } catch (const Json::exception& why) {
-    throw InputError(fmt::format("{}: not JSON: {:.200}", path.string(), why.what()), kHint);
+    return Json::parse(read_file(path, kMostBytes).text());
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("the process file cannot be read: {}", error.what()),
+        "a process is a built-in name or the path of a .json file; '--process list' names the former");
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: not JSON: {:.200}", path.string(), error.what()), kHint);
   }
 }
 

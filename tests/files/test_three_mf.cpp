@@ -52,7 +52,7 @@ TEST_F(ThreeMf, KeepsTheBitsOfCoordinatesOfAnySize) {
 }
 
 TEST_F(ThreeMf, KeepsTrianglesThatNameAVertexTwice) {
-  // The format forbids them, and lib3mf drops such a triangle.
+  // The format forbids them; slicers read them, and so does this reader.
   Mesh mesh = make_box({0, 0, 0}, {1, 2, 3});
   mesh.triangles.insert(mesh.triangles.begin() + 3, Triangle{4, 4, 5});
   mesh.triangles.push_back({2, 6, 2});

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 #include <sys/mount.h>
+#include <sys/stat.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -264,6 +265,60 @@ TEST_F(WriteTest, ASymbolicLinkStaysALink) {
   file.commit();
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(fs::file_size(folder_ / "elsewhere" / "real.stl"), 84 + 50 * 12);
+}
+
+TEST_F(WriteTest, ALinkToAFileThatIsNotThereYetStaysALink) {
+  fs::create_directory(folder_ / "elsewhere");
+  const fs::path link = folder_ / "link.stl", second = folder_ / "second.stl";
+  fs::create_symlink("elsewhere/new.stl", link);
+  fs::create_symlink("link.stl", second);
+  PendingFile file(second);
+  write_bytes("new", file);
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(fs::is_symlink(second));
+  EXPECT_EQ(contents_of(folder_ / "elsewhere" / "new.stl"), "new");
+}
+
+TEST_F(WriteTest, FilesOfSeveralNamesAreNotPartedFromThem) {
+  std::ofstream(folder_ / "a.stl") << "old";
+  fs::create_hard_link(folder_ / "a.stl", folder_ / "b.stl");
+  EXPECT_NE(
+      reason_of([&] { const PendingFile file(folder_ / "a.stl"); }).find("a.stl: has 2 names (hard links)"),
+      std::string::npos);
+  EXPECT_EQ(files_in_folder(), 2);
+}
+
+TEST_F(WriteTest, AReplacedFileHandsOnItsModeAndOwner) {
+  const fs::path target = folder_ / "model.stl";
+  std::ofstream(target) << "old";
+  ASSERT_EQ(::chmod(target.c_str(), 0640), 0);
+  const bool other_owner = ::chown(target.c_str(), 12345, 23456) == 0;  // as root
+  {
+    PendingFile file(target);
+    struct stat pending {};
+    ASSERT_EQ(::stat(file.path().c_str(), &pending), 0);
+    EXPECT_EQ(pending.st_mode & 0777, 0600u);
+    write_bytes("new", file);
+    file.commit();
+  }
+  struct stat facts {};
+  ASSERT_EQ(::stat(target.c_str(), &facts), 0);
+  EXPECT_EQ(facts.st_mode & 0777, 0640u);
+  if (other_owner) {
+    EXPECT_EQ(facts.st_uid, 12345u);
+    EXPECT_EQ(facts.st_gid, 23456u);
+  }
+}
+
+TEST_F(WriteTest, TheModeOfANewFileIsByTheUmask) {
+  const mode_t before = ::umask(027);
+  PendingFile file(folder_ / "new.stl");
+  file.commit();
+  ::umask(before);
+  struct stat facts {};
+  ASSERT_EQ(::stat((folder_ / "new.stl").c_str(), &facts), 0);
+  EXPECT_EQ(facts.st_mode & 0777, 0640u);
 }
 
 TEST_F(WriteTest, ALongNameIsStillWritable) {

@@ -109,6 +109,32 @@ TEST(OrientConsistently, SoundMeshesStayAsTheyAre) {
   EXPECT_TRUE(repaired.notices.empty());
 }
 
+TEST(WithoutRepeatedVertices, LeavesOutThoseTrianglesAlone) {
+  const Mesh box = make_box({0, 0, 0}, {1, 2, 3});
+  Mesh mesh = box;
+  mesh.positions.push_back({9, 9, 9});
+  mesh.triangles.insert(mesh.triangles.begin(), {4, 4, 8});
+  mesh.triangles.insert(mesh.triangles.begin() + 5, {1, 0, 1});
+  mesh.triangles.push_back({2, 2, 2});
+  const Repaired repaired = without_repeated_vertices(mesh);
+  ASSERT_EQ(repaired.mesh.triangles.size(), 12u);
+  EXPECT_EQ(repaired.mesh.positions.size(), 8u);
+  for (std::size_t i = 0; i < 12; ++i) {
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(repaired.mesh.positions[repaired.mesh.triangles[i][k]], box.positions[box.triangles[i][k]]);
+  }
+  EXPECT_EQ(repaired.notices.size(), 1u);
+}
+
+TEST(WithoutRepeatedVertices, OthersWithoutAreaStay) {
+  Mesh mesh = make_box({0, 0, 0}, {1, 2, 3});
+  mesh.positions.push_back({0.5f, 0, 0});
+  mesh.triangles.push_back({0, 8, 1});  // three places on a line
+  const Repaired repaired = without_repeated_vertices(mesh);
+  EXPECT_EQ(repaired.mesh.triangles, mesh.triangles);
+  EXPECT_TRUE(repaired.notices.empty());
+}
+
 TEST(OrientConsistently, OpenMeshesToo) {
   Mesh mesh = make_torus(5, 2, 30, 20);
   mesh.triangles.resize(mesh.triangles.size() / 2);
