@@ -23,16 +23,19 @@ double millimetres_per(LengthUnit unit) {
   return 1;
 }
 
-LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options) {
+LoadedModel load_model(InputFile file, const MeshFormat& format, const LoadOptions& options) {
   if (!std::isfinite(options.scale) || !(options.scale > 0))
     throw UsageError(fmt::format("the scale must be a positive number, not {:g}", options.scale));
-  check_readable(path);
-  const MeshFormat& format = format_to_read(path);
-  InputFile file = read_file(path);
   LoadedModel model = format.read(file, options);
   if (model.mesh.triangles.empty()) fail_to_read(file, "no triangles");
   model.format = format.name;
   return model;
+}
+
+LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options) {
+  check_readable(path);
+  const MeshFormat& format = format_to_read(path);
+  return load_model(read_file(path), format, options);
 }
 
 }  // namespace aerate

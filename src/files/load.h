@@ -14,6 +14,9 @@ class xml_node;
 
 namespace aerate {
 
+struct InputFile;
+struct MeshFormat;
+
 enum class LengthUnit { millimetre, centimetre, metre, inch };
 
 double millimetres_per(LengthUnit unit);
@@ -50,5 +53,8 @@ struct LoadedModel {
 // NaN or infinite coordinates, unknown or garbled content, no triangles, a volume that is not part of the
 // model), UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options = {});
+
+// As above, of a file that is in memory already.
+LoadedModel load_model(InputFile file, const MeshFormat& format, const LoadOptions& options = {});
 
 }  // namespace aerate
