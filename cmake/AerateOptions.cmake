@@ -22,10 +22,9 @@ target_compile_options(aerate_options INTERFACE
     -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion>)
 
 if(AERATE_SANITIZE)
-  target_compile_options(aerate_options INTERFACE
-    $<$<COMPILE_LANGUAGE:CXX>:-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer>
-    $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-fsanitize=address,-fsanitize=undefined,-fno-sanitize-recover=undefined,-fno-omit-frame-pointer>)
-  target_link_options(aerate_options INTERFACE -fsanitize=address,undefined)
+  set(sanitize "-fsanitize=${AERATE_SANITIZE}" -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  target_compile_options(aerate_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${sanitize}>")
+  target_link_options(aerate_options INTERFACE "-fsanitize=${AERATE_SANITIZE}")
 endif()
 
 # aerate_add_library(NAME sources...): a static library of the project with its common options.

@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "printing/slicers/gcode.h"
+#include "printing/slicers/gcode_match.h"
+#include "printing/slicers/slicers.h"
+#include "tests/fuzz/fuzz_input.h"
+
+namespace {
+
+// Places of a print that is small enough to be compared with another.
+bool is_printable(const aerate::ExtrusionMove& move) {
+  constexpr double kHalfOfBed = 1500;  // mm
+  return std::max({std::abs(move.from_x), std::abs(move.from_y), std::abs(move.x), std::abs(move.y)}) <
+         kHalfOfBed;
+}
+
+}  // namespace
+
+// What the hook and `aerate slice` read of G-code and of settings.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using aerate::fuzz::require;
+  const std::string_view gcode = aerate::fuzz::text_of(data, size);
+  return aerate::fuzz::run([&] {
+    const std::vector<aerate::ExtrusionMove> moves = aerate::extrusion_moves(gcode);
+    require(aerate::extrudes(gcode) == !moves.empty(), "G-code extrudes if it has moves that do");
+    for (const aerate::ExtrusionMove& move : moves) {
+      require(std::isfinite(move.x) && std::isfinite(move.y) && std::isfinite(move.z), "places are finite");
+      require(move.filament > 0, "moves that extrude take filament");
+    }
+    const auto difference = aerate::difference_of(moves, moves);
+    if (!moves.empty() && std::ranges::all_of(moves, is_printable))
+      require(!difference, "a print is the same as itself");
+    const aerate::GcodeOrigin origin = aerate::origin_of(gcode);
+    if (origin.slicer != nullptr) aerate::figures_of(gcode, *origin.slicer);
+    aerate::setting_in(gcode, "layer_height");
+    aerate::names_post_processing(gcode);
+
+    constexpr std::string_view kComment = "; aerate = begin\n; aerate = end\n";
+    std::string with = aerate::with_comments(gcode, kComment);
+    const std::size_t at = with.find(kComment);
+    require(at != std::string::npos && (at == 0 || with[at - 1] == '\n'), "comments begin a line");
+    require(aerate::with_thumbnails_of(std::string(gcode), gcode) == gcode,
+            "its own pictures change nothing");
+  });
+}
