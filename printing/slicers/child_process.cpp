@@ -1,17 +1,20 @@
 #include "printing/slicers/child_process.h"
 
+#include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
-#include <spawn.h>
+#include <poll.h>
 #include <string_view>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <system_error>
-#include <thread>
 #include <unistd.h>
+#include <utility>
 
 #include "core/error.h"
 #include "printing/slicers/text_file.h"
@@ -21,7 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kPollInterval{10};
 constexpr mode_t kOwnerOnly = 0600;
 
 std::vector<char*> pointers_to(std::vector<std::string>& strings) {
@@ -44,66 +46,171 @@ std::vector<std::string> merged_environment(const std::vector<std::pair<std::str
   return variables;
 }
 
-// Starts a program that leads a process group, with its standard streams from and to these files.
-pid_t spawn(std::vector<std::string> arguments, std::vector<std::string> variables, const fs::path& answers,
-            const fs::path& printed) {
-  const std::vector<char*> argv = pointers_to(arguments), envp = pointers_to(variables);
-  posix_spawn_file_actions_t streams;
-  posix_spawn_file_actions_init(&streams);
-  posix_spawn_file_actions_addopen(&streams, STDIN_FILENO, answers.c_str(), O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&streams, STDOUT_FILENO, printed.c_str(),
-                                   O_WRONLY | O_CREAT | O_APPEND | O_TRUNC, kOwnerOnly);
-  posix_spawn_file_actions_adddup2(&streams, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  pid_t pid = -1;
-  const int error = posix_spawnp(&pid, argv[0], &streams, &attributes, argv.data(), envp.data());
-  posix_spawn_file_actions_destroy(&streams);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0)
-    throw FailureError(arguments.front() + ": cannot be run: " + std::generic_category().message(error));
-  return pid;
+void close_if_open(int& descriptor) {
+  if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
 }
 
-int wait_for(pid_t pid) {
-  int status = 0;
-  while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+// Both ends are closed in programs that are started.
+struct Pipe {
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+      throw FailureError("no pipe can be made: " + std::generic_category().message(errno));
+    reads = ends[0];
+    writes = ends[1];
   }
-  return status;
+  ~Pipe() {
+    close_if_open(reads);
+    close_if_open(writes);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  int reads = -1, writes = -1;
+};
+
+// What a keeper tells: why the program could not be started (errno), or how it ended (a status of wait).
+struct KeeperReport {
+  int error = 0;
+  int status = 0;
+};
+
+// All that is needed between fork and exec, made before: nothing there may allocate.
+struct Start {
+  std::vector<std::string> arguments, variables;
+  std::string answers, printed;
+  std::vector<char*> argv = pointers_to(arguments), envp = pointers_to(variables);
+};
+
+[[noreturn]] void become_program(const Start& start, pid_t keeper, int report_to) {
+  KeeperReport failure;
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != keeper) ::_exit(1);  // it ended before
+  const int in = ::open(start.answers.c_str(), O_RDONLY | O_CLOEXEC);
+  const int out =
+      ::open(start.printed.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kOwnerOnly);
+  if (in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
+      ::dup2(out, STDERR_FILENO) >= 0)
+    ::execvpe(start.argv[0], start.argv.data(), start.envp.data());
+  failure.error = errno;
+  [[maybe_unused]] const ssize_t written = ::write(report_to, &failure, sizeof(failure));
+  ::_exit(1);
 }
 
-// Ends the child and whatever it started when it is left while running.
+// Waits for the program, and ends it with all it started as soon as nobody holds the other end of `life`: the
+// process that wanted it is gone, be it by SIGKILL.
+[[noreturn]] void keep(pid_t program, int life, int report_to) {
+  constexpr int kPollMilliseconds = 10;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(signal, SIG_IGN);
+  KeeperReport report;
+  pollfd watched{life, POLLIN, 0};
+  for (;;) {
+    if (::waitpid(program, &report.status, WNOHANG) == program) break;
+    if (::poll(&watched, 1, kPollMilliseconds) <= 0) continue;
+    ::kill(-program, SIGKILL);
+    ::kill(program, SIGKILL);  // if it leads no group yet
+    ::waitpid(program, &report.status, 0);
+    ::_exit(0);
+  }
+  [[maybe_unused]] const ssize_t written = ::write(report_to, &report, sizeof(report));
+  ::_exit(0);
+}
+
+// The forked process that has the program as its child. Only calls that are safe after the fork of a process
+// with threads.
+[[noreturn]] void become_keeper(const Start& start, Pipe& life, Pipe& reports) {
+  ::setpgid(0, 0);  // out of reach of the terminal's signals
+  ::close(life.writes);
+  ::close(reports.reads);
+  const pid_t keeper = ::getpid();
+  const pid_t program = ::fork();
+  if (program == 0) become_program(start, keeper, reports.writes);
+  if (program < 0) {
+    const KeeperReport failure{.error = errno, .status = 0};
+    [[maybe_unused]] const ssize_t written = ::write(reports.writes, &failure, sizeof(failure));
+    ::_exit(1);
+  }
+  keep(program, life.reads, reports.writes);
+}
+
+// A program that leads a process group, with its standard streams from and to files, and a keeper beside it. It
+// is ended, and whatever it started, when this object or this process ends.
 class RunningChild {
  public:
-  RunningChild(pid_t pid, Monitor& monitor) : pid_(pid), monitor_(monitor) {}
+  RunningChild(const Start& start, Monitor& monitor) : name_(start.arguments.front()), monitor_(monitor) {
+    keeper_ = ::fork();
+    if (keeper_ == 0) become_keeper(start, life_, reports_);
+    if (keeper_ < 0) throw cannot_be_run(errno);
+    close_if_open(life_.reads);
+    close_if_open(reports_.writes);
+  }
   ~RunningChild() {
-    if (ended_) return;
-    ::kill(-pid_, SIGKILL);
-    wait_for(pid_);
+    close_if_open(life_.writes);
+    while (::waitpid(keeper_, nullptr, 0) < 0 && errno == EINTR) {
+    }
   }
   RunningChild(const RunningChild&) = delete;
   RunningChild& operator=(const RunningChild&) = delete;
 
   int wait() {
-    int status = 0;
-    for (;;) {
-      const pid_t changed = ::waitpid(pid_, &status, WNOHANG);
-      if (changed == pid_) break;
-      if (changed < 0 && errno != EINTR) throw FailureError("a started program cannot be waited for");
-      monitor_.check_interrupted();
-      std::this_thread::sleep_for(kPollInterval);
-    }
-    ended_ = true;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    constexpr int kPollMilliseconds = 10;
+    pollfd watched{reports_.reads, POLLIN, 0};
+    while (::poll(&watched, 1, kPollMilliseconds) <= 0) monitor_.check_interrupted();
+    KeeperReport report;
+    if (::read(reports_.reads, &report, sizeof(report)) != sizeof(report))
+      throw FailureError("a started program cannot be waited for");
+    if (report.error != 0) throw cannot_be_run(report.error);
+    return WIFEXITED(report.status) ? WEXITSTATUS(report.status) : 128 + WTERMSIG(report.status);
   }
 
  private:
-  pid_t pid_;
+  FailureError cannot_be_run(int error) const {
+    return FailureError(name_ + ": cannot be run: " + std::generic_category().message(error));
+  }
+
+  std::string name_;
   Monitor& monitor_;
-  bool ended_ = false;
+  Pipe life_, reports_;
+  pid_t keeper_ = -1;
 };
+
+constexpr std::string_view kFolderPrefix = "aerate-";
+constexpr const char* kLockName = "lock";
+
+// Locked for as long as this process lives, or a child that it forked. Made under another name, so that one of
+// the right name is never without its lock. Negative if it cannot be made.
+int made_lock(const fs::path& folder) {
+  const fs::path unlocked = folder / "lock.new";
+  int descriptor = ::open(unlocked.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerOnly);
+  if (descriptor < 0) return -1;
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 ||
+      ::rename(unlocked.c_str(), (folder / kLockName).c_str()) != 0)
+    close_if_open(descriptor);
+  return descriptor;
+}
+
+bool is_own_folder(const fs::path& path) {
+  struct stat facts {};
+  return ::lstat(path.c_str(), &facts) == 0 && S_ISDIR(facts.st_mode) && facts.st_uid == ::geteuid() &&
+         (facts.st_mode & (S_IRWXG | S_IRWXO)) == 0;
+}
+
+// Removes the folder of a process that ended without doing so: its lock is there, and nobody holds it.
+void remove_if_left(const fs::path& folder) {
+  if (!folder.filename().string().starts_with(kFolderPrefix) || !is_own_folder(folder)) return;
+  int lock = ::open((folder / kLockName).c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+  if (lock < 0) return;
+  std::error_code ignored;
+  if (::flock(lock, LOCK_EX | LOCK_NB) == 0) fs::remove_all(folder, ignored);
+  close_if_open(lock);
+}
+
+void remove_folders_left_in(const fs::path& base) {
+  std::error_code ignored;
+  for (fs::directory_iterator entry(base, ignored), end; !ignored && entry != end; entry.increment(ignored))
+    remove_if_left(entry->path());
+}
 
 }  // namespace
 
@@ -111,7 +218,8 @@ PrivateFolder::PrivateFolder(Monitor& monitor) : monitor_(monitor) {
   // Not temp_directory_path, which does not say which path it could not use.
   const char* given = std::getenv("TMPDIR");
   const fs::path base = given != nullptr && *given != '\0' ? given : "/tmp";
-  std::string pattern = (fs::absolute(base) / "aerate-XXXXXX").string();
+  remove_folders_left_in(base);
+  std::string pattern = (fs::absolute(base) / (std::string(kFolderPrefix) + "XXXXXX")).string();
   if (::mkdtemp(pattern.data()) == nullptr) {
     const int error = errno;
     throw FailureError(
@@ -119,20 +227,22 @@ PrivateFolder::PrivateFolder(Monitor& monitor) : monitor_(monitor) {
         "set TMPDIR to a folder with free space");
   }
   path_ = pattern;
+  lock_ = made_lock(path_);
   monitor_.temporary_file_made(path_);
 }
 
 PrivateFolder::~PrivateFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+  close_if_open(lock_);
   monitor_.temporary_file_gone(path_);
 }
 
 ChildOutcome run_child(const ChildCommand& command, Monitor& monitor) {
   const fs::path answers = command.folder / "answers", printed = command.folder / "printed";
   std::ofstream(answers) << "y\n";
-  RunningChild child(spawn(command.arguments, merged_environment(command.environment), answers, printed),
-                     monitor);
+  const Start start{command.arguments, merged_environment(command.environment), answers, printed};
+  RunningChild child(start, monitor);
   ChildOutcome outcome;
   outcome.exit_code = child.wait();
   outcome.printed = read_text(printed);

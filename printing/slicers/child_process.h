@@ -11,7 +11,7 @@
 namespace aerate {
 
 // A folder that only this user can enter, in the system's place for temporary files; removed with everything
-// in it at the end of its life. Throws FailureError if it cannot be made.
+// in it at the end of its life. Folders that processes left there which were killed go first. Throws FailureError if it cannot be made.
 class PrivateFolder {
  public:
   explicit PrivateFolder(Monitor& monitor);
@@ -24,6 +24,7 @@ class PrivateFolder {
  private:
   Monitor& monitor_;
   std::filesystem::path path_;
+  int lock_ = -1;  // held for as long as the folder is in use
 };
 
 struct ChildCommand {
@@ -40,7 +41,7 @@ struct ChildOutcome {
 };
 
 // Runs a program to its end. It reads one line "y" and then an end of file, should it ask a question. It
-// leads a process group, which is killed when the monitor interrupts. Throws FailureError if it cannot be
+// leads a process group, which is killed when the monitor interrupts or this process ends, however it does. Throws FailureError if it cannot be
 // started.
 ChildOutcome run_child(const ChildCommand& command, Monitor& monitor);
 
