@@ -53,7 +53,12 @@ void replace_header(const fs::path& gcode, std::string_view printed) {
   constexpr std::string_view kBegin = "Gcode header after slicing:\n", kEnd = "End of gcode header.";
   const std::size_t begin = printed.find(kBegin), end = printed.find(kEnd);
   if (begin == std::string_view::npos || end == std::string_view::npos || end < begin) return;
-  const std::string_view header = printed.substr(begin + kBegin.size(), end - begin - kBegin.size());
+  std::string header;
+  for_each_line(printed.substr(begin + kBegin.size(), end - begin - kBegin.size()),
+                [&](std::string_view line) {
+                  if (line.starts_with(';')) header.append(line).append("\n");
+                  return true;
+                });
   std::string text = read_text(gcode);
   const std::size_t old_end = text.find("\n\n");
   if (!text.starts_with(";FLAVOR") || old_end == std::string::npos) return;
@@ -85,6 +90,11 @@ std::optional<double> length_of(std::string_view text) {
   return metres * kMillimetresPerMetre;
 }
 
+// Before the settings that Cura itself puts behind it.
+bool is_complete(std::string_view gcode) {
+  return gcode.find("\n;End of Gcode") != std::string_view::npos;
+}
+
 bool begins_layer(std::string_view comment) {
   return comment.starts_with(";LAYER:");
 }
@@ -103,6 +113,7 @@ SlicerProfile cura_engine() {
   row.figures = {{"Filament used", &GcodeFigures::filament_mm, length_of},
                  {"TIME", &GcodeFigures::seconds, number_at_front}};
   row.begins_layer = begins_layer;
+  row.is_complete = is_complete;
   return row;
 }
 

@@ -80,7 +80,8 @@ struct ExtrusionMove {
 };
 
 // Moves of G0 to G3 that feed filament while moving; absolute and relative coordinates, G92. Arcs (by I, J)
-// are cut into chords of at most a millimetre. O(bytes).
+// are cut into chords of at most a millimetre, as far as the text's length allows so many moves; longer ones
+// count as straight, and no coordinate is beyond ten kilometres. O(bytes).
 std::vector<ExtrusionMove> extrusion_moves(std::string_view gcode);
 
 // Whether there is any such move.

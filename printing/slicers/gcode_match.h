@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "printing/slicers/gcode.h"
+#include "printing/slicers/print_log.h"
 
 namespace aerate {
 
@@ -22,11 +23,21 @@ struct PrintDifference {
 // The largest distance between the sides of two prints' outlines, mm.
 double outline_distance(const std::vector<ExtrusionMove>& a, const std::vector<ExtrusionMove>& b);
 
-// O(length of all moves + area of the prints).
+// O(length of all moves + area of the larger print). Prints beyond three metres or a hundred kilometres of
+// lines count as different altogether.
 PrintDifference compare_prints(const std::vector<ExtrusionMove>& a, const std::vector<ExtrusionMove>& b);
 
 // Nothing if the prints are the same but for what varies from run to run, else what differs, in words.
 std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
                                          const std::vector<ExtrusionMove>& b);
+
+// The first command of `a` that `b` has not at its place, or the other way round, in words; nothing if each
+// layer has the same in the same order. `a` is the G-code that is spoken of.
+std::optional<std::string> difference_in_commands(const PrintLog& a, const PrintLog& b);
+
+// The same for two prints of what should be the same model: its features, too, are printed alike (filament,
+// speed, fan, acceleration, number of lines and
+// seams), but for what varies from run to run.
+std::optional<std::string> difference_of(const PrintLog& a, const PrintLog& b);
 
 }  // namespace aerate

@@ -24,6 +24,14 @@ std::string metadata_of(const pugi::xml_node& node, const char* key) {
   return node.find_child_by_attribute("metadata", "key", key).attribute("value").as_string();
 }
 
+std::string entry_or_nothing(const std::filesystem::path& package, const char* entry) {
+  try {
+    return read_3mf_entry(package, entry);
+  } catch (const FailureError&) {
+    return "";
+  }
+}
+
 pugi::xml_document read_document(const std::filesystem::path& package, const char* entry) {
   const std::string content = read_3mf_entry(package, entry);
   pugi::xml_document document;

@@ -37,6 +37,9 @@ std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent
 
 std::string metadata_of(const pugi::xml_node& node, const char* key);
 
+// An entry of a package, empty if there is none.
+std::string entry_or_nothing(const std::filesystem::path& package, const char* entry);
+
 // An entry of a package that was written here. Throws FailureError if it is not there or no XML.
 pugi::xml_document read_document(const std::filesystem::path& package, const char* entry);
 

@@ -1,12 +1,21 @@
+#include <array>
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "printing/slicers/ini_settings.h"
 #include "printing/slicers/slicers.h"
 
 namespace aerate {
 namespace {
 
 constexpr const char* kPartList = "Metadata/Slic3r_PE_model.config";
+
+// Ends with its settings; newer versions say so in a line of its own.
+bool is_complete(std::string_view gcode) {
+  if (gcode.find("_config = begin\n") != std::string_view::npos)
+    return gcode.find("_config = end") != std::string_view::npos;
+  return ends_with_setting(gcode);
+}
 
 ChildCommand command_for(const std::filesystem::path& program, const SliceJob& job) {
   ChildCommand command{{program, "--export-gcode"}, {}, job.scratch};
@@ -20,7 +29,7 @@ ChildCommand command_for(const std::filesystem::path& program, const SliceJob& j
 constexpr const char* kTemplate = R"(<?xml version="1.0"?>
 <config>
  <object id="1" instances_count="1">
-  <metadata type="object" key="name" value="{0}" />
+  <metadata type="object" key="name" value="{7}" />
   <volume firstid="{1}" lastid="{2}">
    <metadata type="volume" key="name" value="{0}" />
    <metadata type="volume" key="volume_type" value="ModelPart" />
@@ -35,11 +44,32 @@ constexpr const char* kTemplate = R"(<?xml version="1.0"?>
 </config>
 )";
 
-ThreeMfExtras extras_for(const ObjectPart& model, const ObjectPart& voids) {
+ThreeMfExtras extras_for(const ObjectPart& model, const ObjectPart& voids, const std::string& object_name) {
   ThreeMfExtras extras;
+  extras.object_name = object_name;
+  const std::string object = xml_value(object_name.empty() ? model.name : object_name);
   extras.entries = {
       {kPartList, fmt::format(kTemplate, model.name, model.first_triangle, model.end() - 1, voids.name,
-                              voids.first_triangle, voids.end() - 1, voids.infill)}};
+                              voids.first_triangle, voids.end() - 1, voids.infill, object)}};
+  return extras;
+}
+
+ThreeMfExtras named(const ObjectPart& model, const std::string& object_name) {
+  constexpr const char* kOnePart = R"(<?xml version="1.0"?>
+<config>
+ <object id="1" instances_count="1">
+  <metadata type="object" key="name" value="{0}" />
+  <volume firstid="{1}" lastid="{2}">
+   <metadata type="volume" key="name" value="{0}" />
+   <metadata type="volume" key="volume_type" value="ModelPart" />
+  </volume>
+ </object>
+</config>
+)";
+  ThreeMfExtras extras;
+  extras.object_name = object_name;
+  extras.entries = {
+      {kPartList, fmt::format(kOnePart, xml_value(object_name), model.first_triangle, model.end() - 1)}};
   return extras;
 }
 
@@ -62,6 +92,71 @@ std::optional<std::string> other_kind(const pugi::xml_node& volume) {
   return type.empty() || type == "ModelPart" ? std::nullopt : std::optional(type);
 }
 
+// Settings of an object or a volume; what else stands there is said of every project.
+std::optional<std::string> setting_in_metadata(const pugi::xml_node& metadata) {
+  const std::string key = metadata.attribute("key").as_string(),
+                    value = metadata.attribute("value").as_string();
+  for (const char* other : {"name", "matrix", "volume_type", "modifier"}) {
+    if (key == other) return std::nullopt;
+  }
+  if (key.starts_with("source_")) return std::nullopt;  // where the part was read from
+  if (key == "extruder" && (value == "0" || value == "1")) return std::nullopt;  // the one that prints anyway
+  return key + " = " + value;
+}
+
+void read_object(const pugi::xml_node& object, ProjectFacts& facts) {
+  if (facts.object_name.empty()) facts.object_name = metadata_of(object, "name");
+  const auto read_metadata = [&](const pugi::xml_node& node) {
+    for (const pugi::xml_node metadata : node.children("metadata")) {
+      if (const auto setting = setting_in_metadata(metadata))
+        facts.beyond_mesh.push_back("settings of the object (" + *setting + ")");
+    }
+  };
+  read_metadata(object);
+  for (const pugi::xml_node volume : object.children("volume")) read_metadata(volume);
+}
+
+ProjectFacts project_facts(const std::filesystem::path& package) {
+  // Entries of a package with an element that says something, and attributes of painted triangles.
+  constexpr std::array<std::array<const char*, 3>, 3> kLists{
+      {{"Metadata/Prusa_Slicer_custom_gcode_per_print_z.xml", "<code ",
+        "colour changes, pauses or G-code between layers"},
+       {"Metadata/Prusa_Slicer_layer_config_ranges.xml", "<range ", "settings of layers"},
+       {"Metadata/Slic3r_PE_layer_heights_profile.txt", "object_id=", "variable layer heights"}}};
+  constexpr std::array<std::array<const char*, 2>, 4> kPaint{{{":custom_seam=\"", "painted seams"},
+                                                              {":custom_supports=\"", "painted supports"},
+                                                              {":mmu_segmentation=\"", "painted colours"},
+                                                              {":fuzzy_skin=\"", "painted fuzzy skin"}}};
+  ProjectFacts facts;
+  const std::string config = entry_or_nothing(package, kPartList);
+  pugi::xml_document document;
+  if (document.load_buffer(config.data(), config.size())) {
+    for (const pugi::xml_node object : document.child("config").children("object"))
+      read_object(object, facts);
+  }
+  for (const auto& [entry, element, words] : kLists) {
+    if (entry_or_nothing(package, entry).find(element) != std::string::npos)
+      facts.beyond_mesh.emplace_back(words);
+  }
+  facts.settings = plain_settings(entry_or_nothing(package, "Metadata/Slic3r_PE.config"));
+  const std::string model = entry_or_nothing(package, kThreeMfModel);
+  for (const auto& [attribute, words] : kPaint) {
+    if (model.find(attribute) != std::string::npos) facts.beyond_mesh.emplace_back(words);
+  }
+  return facts;
+}
+
+// "; printing object NAME id:0 copy 0"
+std::optional<std::string> labelled_object(std::string_view gcode) {
+  constexpr std::string_view kBegin = "\n; printing object ", kEnd = " id:";
+  const std::size_t begin = gcode.find(kBegin);
+  if (begin == std::string_view::npos) return std::nullopt;
+  std::string_view line = gcode.substr(begin + kBegin.size());
+  line = line.substr(0, line.find('\n'));
+  const std::size_t end = line.rfind(kEnd);
+  return end == std::string_view::npos ? std::nullopt : std::optional(std::string(line.substr(0, end)));
+}
+
 }  // namespace
 
 SlicerProfile prusa_slicer() {
@@ -72,10 +167,13 @@ SlicerProfile prusa_slicer() {
   row.programs = {"prusa-slicer", "PrusaSlicer", "prusa-slicer-console", "superslicer", "SuperSlicer"};
   row.settings = {".ini or G-code (PrusaSlicer, Slic3r)"};
   row.command = command_for;
+  row.is_complete = is_complete;
   row.marks = {"generated by PrusaSlicer", "generated by SuperSlicer"};
   row.calls_hook = {"prusa-slicer", "super-slicer"};
   row.repeats_gcode = true;
-  row.modifiers = {"prusa", {kPartList, "volume", other_kind}, extras_for, read_parts};
+  row.project = project_facts;
+  row.labelled_object = labelled_object;
+  row.modifiers = {"prusa", {kPartList, "volume", other_kind}, extras_for, named, read_parts};
   return row;
 }
 

@@ -1,5 +1,6 @@
 #include "printing/slicers/slicers.h"
 
+#include <cstdint>
 #include <cstdlib>
 #include <fmt/ranges.h>
 #include <fstream>
@@ -33,6 +34,16 @@ std::vector<fs::path> search_path() {
   while (!printed.empty() && printed.back() == '\n') printed.pop_back();
   throw FailureError(fmt::format("{} {} on {}", slicer.profile->name, why, job.model.filename().string()) +
                      (printed.empty() ? "; it printed nothing" : "; it printed:\n" + printed));
+}
+
+// In words, where there is so little that it may be why.
+std::string space_left(const fs::path& file) {
+  constexpr std::uintmax_t kPlenty = 16 << 20;
+  std::error_code error;
+  const fs::space_info space = fs::space(file.parent_path(), error);
+  if (error || space.available > kPlenty) return "";
+  return fmt::format(" (there are {} kB left in {}: set TMPDIR to a folder with more)",
+                     space.available / 1024, file.parent_path().string());
 }
 
 }  // namespace
@@ -71,12 +82,13 @@ Slicer find_slicer(const SlicerProfile& profile, const fs::path& path) {
       "install it, or give its program as --slicer-path");
 }
 
-void require_settings(const SlicerSettings& settings) {
+void require_settings(const SlicerSettings& settings, const SlicerProfile& slicer) {
   for (const fs::path& file : settings.files) {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || !std::ifstream(file))
       throw InputError(file.string() + ": no settings can be read from it",
                        "give the slicer's own settings file");
+    if (slicer.check_settings != nullptr) slicer.check_settings(file);
   }
 }
 
@@ -108,6 +120,8 @@ GcodeFigures slice(const Slicer& slicer, const SliceJob& job, Monitor& monitor) 
     fail(slicer, job, "wrote binary G-code, which cannot be read here: set binary_gcode = 0",
          outcome.printed);
   if (!extrudes(text)) fail(slicer, job, "wrote G-code that extrudes nothing", outcome.printed);
+  if (!slicer.profile->is_complete(text))
+    fail(slicer, job, "wrote G-code whose end is missing" + space_left(job.gcode), outcome.printed);
   return figures_of(text, *slicer.profile, known);
 }
 

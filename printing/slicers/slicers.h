@@ -40,10 +40,20 @@ struct FigureLine {
 struct ModifierFormat {
   std::string flavor;  // as on the command line
   VolumeList volumes;
-  // For `to_3mf` of a mesh that these parts cover in order.
-  ThreeMfExtras (*extras)(const ObjectPart& model, const ObjectPart& voids);
+  // For `to_3mf` of a mesh that these parts cover in order. The object is called as the model's part is if
+  // `object_name` is empty.
+  ThreeMfExtras (*extras)(const ObjectPart& model, const ObjectPart& voids, const std::string& object_name);
+  // For `to_3mf` of a mesh that is one body, so that the slicer calls the object by this name.
+  ThreeMfExtras (*named)(const ObjectPart& model, const std::string& object_name);
   // The parts that such a package names. Throws FailureError for one that is not as it was written.
   std::vector<ObjectPart> (*read)(const std::filesystem::path& package);
+};
+
+// What a project says of its model beside the mesh.
+struct ProjectFacts {
+  std::string object_name;               // as the slicer calls the (first) object; empty if it is not said
+  std::vector<std::string> beyond_mesh;  // what a mesh does not carry, in words: "painted seams"
+  std::string settings;                  // of the whole print, as lines "key = value"
 };
 
 // All that is known of a slicer.
@@ -56,6 +66,8 @@ struct SlicerProfile {
   std::vector<std::string> programs;  // its names on the search path
   std::vector<std::string> settings;  // kinds of files with settings, in words; each kind in one row
   ChildCommand (*command)(const std::filesystem::path& program, const SliceJob& job) = nullptr;
+  // If given: throws InputError for a file of settings that the slicer would take for others in silence.
+  void (*check_settings)(const std::filesystem::path& file) = nullptr;
   // If given: puts the G-code of a run where the job wants it, and gives figures that only its output says.
   GcodeFigures (*collect)(const SliceJob& job, const std::string& printed) = nullptr;
 
@@ -64,8 +76,14 @@ struct SlicerProfile {
   std::vector<std::string_view> marks;
   std::vector<FigureLine> figures;
   bool (*begins_layer)(std::string_view comment) = nullptr;
+  // Whether the end of a G-code is there: a slicer may not say that its disk was full.
+  bool (*is_complete)(std::string_view gcode) = nullptr;
   std::vector<std::string> calls_hook;  // of the family, those that call post-processing scripts
   bool repeats_gcode = false;           // a G-code holds the settings to slice the model once more
+  // What the projects say that it keeps as 3MF packages, if that is known. For a package that could be loaded.
+  ProjectFacts (*project)(const std::filesystem::path& package) = nullptr;
+  // The name of the object in its G-code, if the print is of one and it labels objects.
+  std::optional<std::string> (*labelled_object)(std::string_view gcode) = nullptr;
 
   // Absent for a slicer that reads no modifiers; voids are surfaces, which all of them take.
   std::optional<ModifierFormat> modifiers;
@@ -100,8 +118,8 @@ struct Slicer {
 // UsageError that says where was looked.
 Slicer find_slicer(const SlicerProfile& profile, const std::filesystem::path& path);
 
-// Throws InputError for a settings file that cannot be read.
-void require_settings(const SlicerSettings& settings);
+// Throws InputError for a settings file that cannot be read, or that this slicer would not take for what it is.
+void require_settings(const SlicerSettings& settings, const SlicerProfile& slicer);
 
 // True if the settings name programs to be run on the G-code.
 bool have_post_processing(const SlicerSettings& settings);
@@ -111,7 +129,7 @@ inline constexpr const char* kSlicedByVariable = "AERATE_SLICING";
 
 // Slices a model with its settings, but without their post-processing programs, and gives what the slicer
 // says of the result. Throws FailureError, with everything the slicer printed, if it fails or leaves no
-// G-code.
+// whole G-code.
 GcodeFigures slice(const Slicer& slicer, const SliceJob& job, Monitor& monitor);
 
 }  // namespace aerate

@@ -15,6 +15,12 @@ namespace aerate {
 // All bytes of a file. Throws InputError if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 
+// Text from outside as it may stand in a comment of G-code or in a message: nothing in it ends a line or
+// commands a terminal. Control characters become "\\x0A" and the like; what is too long is cut off.
+std::string on_one_line(std::string_view text);
+
+bool is_utf8(std::string_view text);
+
 // Calls f(line) for each line, without its line end; f returns false to stop.
 template <typename F>
 void for_each_line(std::string_view text, const F& f) {
@@ -31,6 +37,13 @@ inline std::string_view trimmed(std::string_view text) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ')) text.remove_suffix(1);
   return text;
+}
+
+// Without what slicers take for blanks round it: tabs, line ends and the like among them.
+inline std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n\v\f";
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
 }
 
 // The number at the front of `text`, which is taken off it.

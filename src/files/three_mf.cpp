@@ -108,25 +108,27 @@ void append_mesh(std::string& out, std::span<const Vec3f> positions, std::span<c
   out += "</triangles>\n</mesh>\n";
 }
 
-void begin_object(std::string& out, std::size_t id) {
-  out += fmt::format("<object id=\"{}\" type=\"model\">\n", id);
+void begin_object(std::string& out, std::size_t id, std::string_view name = {}) {
+  out += fmt::format("<object id=\"{}\" type=\"model\"", id);
+  if (!name.empty()) out += fmt::format(" name=\"{}\"", xml_value(name));
+  out += ">\n";
 }
 
-void append_mesh_object(std::string& out, std::size_t id, const Mesh& mesh) {
-  begin_object(out, id);
+void append_mesh_object(std::string& out, std::size_t id, const Mesh& mesh, std::string_view name = {}) {
+  begin_object(out, id, name);
   append_mesh(out, mesh.positions, mesh.triangles);
   out += "</object>\n";
 }
 
 // The object of components and what it consists of; its id.
-std::size_t append_components(std::string& out, const Mesh& mesh, const std::vector<std::size_t>& counts) {
+std::size_t append_components(std::string& out, const Mesh& mesh, const ThreeMfExtras& extras) {
   std::size_t first = 0, id = 0;
-  for (const std::size_t count : counts) {
+  for (const std::size_t count : extras.component_triangles) {
     append_mesh_object(out, ++id, submesh(mesh, std::span(mesh.triangles).subspan(first, count)));
     first += count;
   }
   const std::size_t object = id + 1;
-  begin_object(out, object);
+  begin_object(out, object, extras.object_name);
   out += "<components>\n";
   for (id = 1; id < object; ++id) out += fmt::format("<component objectid=\"{}\"/>\n", id);
   out += "</components>\n</object>\n";
@@ -141,15 +143,38 @@ std::string model_document(const Mesh& mesh, const ThreeMfExtras& extras) {
       extras.application + "</metadata>\n<resources>\n";
   std::size_t object = 1;
   if (extras.component_triangles.empty()) {
-    append_mesh_object(out, object, mesh);
+    append_mesh_object(out, object, mesh, extras.object_name);
   } else {
-    object = append_components(out, mesh, extras.component_triangles);
+    object = append_components(out, mesh, extras);
   }
   out += fmt::format("</resources>\n<build>\n<item objectid=\"{}\"/>\n</build>\n</model>\n", object);
   return out;
 }
 
 }  // namespace
+
+std::string xml_value(std::string_view text) {
+  std::string value;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        value += "&amp;";
+        break;
+      case '<':
+        value += "&lt;";
+        break;
+      case '>':
+        value += "&gt;";
+        break;
+      case '"':
+        value += "&quot;";
+        break;
+      default:
+        value += c;
+    }
+  }
+  return value;
+}
 
 std::string to_3mf(const Mesh& mesh, const ThreeMfExtras& extras) {
   const std::string types =

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -22,10 +23,14 @@ struct ThreeMfEntry {
 struct ThreeMfExtras {
   // If given, the object is put together of components: the mesh is cut into so many triangles each, in
   // order, which become objects 1, 2, ...; the object that is printed comes after them. Else it is object 1.
-  std::vector<std::size_t> component_triangles;
-  std::string application = "aerate";  // said to have made the package
-  std::vector<ThreeMfEntry> entries;   // further files of the package
+  std::vector<std::size_t> component_triangles = {};
+  std::string application = "aerate";      // said to have made the package
+  std::string object_name = {};            // of the object that is printed, in UTF-8; none if empty
+  std::vector<ThreeMfEntry> entries = {};  // further files of the package
 };
+
+// Text as an attribute's value: what XML gives a meaning is escaped.
+std::string xml_value(std::string_view text);
 
 // A 3MF package in millimetres with one object, for any program that reads 3MF. Decimals read back to the
 // same fp32. The format forbids a triangle to name a vertex twice, so triangles without area get vertices of

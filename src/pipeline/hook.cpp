@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <string_view>
-#include <strings.h>
 #include <utility>
 
 #include "core/error.h"
@@ -19,6 +18,12 @@ namespace aerate {
 namespace {
 
 namespace fs = std::filesystem;
+
+// What to do where the hook cannot.
+constexpr const char* kHollowFirst =
+    "what was set in the slicer's window for objects, layers or faces is not in a mesh: hollow the model "
+    "first "
+    "('aerate hollow') and set it there";
 
 // The block of comments begins and ends with these.
 constexpr std::string_view kBegin = "; aerate = begin\n", kEnd = "; aerate = end\n";
@@ -59,10 +64,20 @@ void require_same_place(const SlicedForm& form, const std::vector<ExtrusionMove>
                                    name_of(form.form), distance));
 }
 
-void require_match(const std::vector<ExtrusionMove>& original, const SlicedForm& solid, const Slicer& slicer,
+// What the G-code holds that is compared with what the model gives.
+struct Original {
+  explicit Original(std::string_view gcode) : moves(extrusion_moves(gcode)), log(log_of_print(gcode)) {}
+
+  std::vector<ExtrusionMove> moves;
+  PrintLog log;
+};
+
+void require_match(const Original& original, const SlicedForm& solid, const Slicer& slicer,
                    const GcodeOrigin& origin, const HookOptions& options) {
   const std::string gcode = read_text(solid.gcode);
-  const auto difference = difference_of(original, extrusion_moves(gcode));
+  auto difference = difference_of(original.moves, extrusion_moves(gcode));
+  const bool is_elsewhere = difference.has_value();
+  if (!difference) difference = difference_of(original.log, log_of_print(gcode));
   if (!difference) return;
   const std::string slicer_name = origin_of(gcode).name;
   throw InputError(
@@ -71,8 +86,41 @@ void require_match(const std::vector<ExtrusionMove>& original, const SlicedForm&
       slicer_name != origin.name
           ? fmt::format("the G-code is by {}, and {} is {}: give the program that made it as --slicer-path",
                         origin.name, slicer.program.string(), slicer_name)
-          : "it has to be the only object on the plate, as it stands in the file: not turned, scaled, "
-            "mirrored, cut or moved; a project saved as 3MF keeps its place");
+      : is_elsewhere
+          ? "it has to be the only object on the plate, as it stands in the file: not turned, scaled, "
+            "mirrored, cut or moved; a project saved as 3MF keeps its place"
+          : kHollowFirst);
+}
+
+// Of a project saved as 3MF the slicer knows more than the mesh, which is all that is sliced again.
+ProjectFacts facts_of_project(const HookOptions& options, const Slicer& slicer) {
+  const fs::path& model = options.request.hollow.model;
+  if (!is_project(model) || slicer.profile->project == nullptr) return {};
+  ProjectFacts facts = slicer.profile->project(model);
+  if (!facts.beyond_mesh.empty())
+    throw InputError(fmt::format("{}: the project has {}, which would be lost", model.string(),
+                                 on_one_line(facts.beyond_mesh.front())),
+                     kHollowFirst);
+  return facts;
+}
+
+// As the G-code calls it, if it does, since it may have been renamed on the plate; else as the slicer would.
+std::string object_name_in(const std::string& gcode, const ProjectFacts& facts, const Slicer& slicer,
+                           const fs::path& model) {
+  if (slicer.profile->labelled_object != nullptr) {
+    if (auto name = slicer.profile->labelled_object(gcode)) return *name;
+  }
+  if (!facts.object_name.empty()) return facts.object_name;
+  return is_project(model) ? "" : model.filename().string();
+}
+
+// The hollowed print does all that the original does beside moving.
+void require_commands(const SlicedForm& form, const Original& original) {
+  const auto difference = difference_in_commands(original.log, log_of_print(read_text(form.gcode)));
+  if (difference)
+    throw FailureError(fmt::format("the print with {} does not do all that the G-code does ({})",
+                                   name_of(form.form), *difference),
+                       kHollowFirst);
 }
 
 // Without them the slicer would take its defaults, or stumble.
@@ -83,15 +131,11 @@ void require_settings_in(const std::string& gcode, const HookOptions& options) {
       "switch off whatever takes the last lines of the G-code away, or leave out --model");
 }
 
-bool is_project(const fs::path& model) {
-  return ::strcasecmp(model.extension().c_str(), ".3mf") == 0;
-}
-
 std::string comments_for(const HookReport& report) {
   const SlicedForm& best = report.best();
   std::string text(kBegin);
   text += fmt::format("; aerate_result = {}\n", report.result());
-  if (!report.remark.empty()) text += fmt::format("; aerate_remark = {}\n", report.remark);
+  if (!report.remark.empty()) text += fmt::format("; aerate_remark = {}\n", on_one_line(report.remark));
   for (const auto& [name, figure, decimals] : kNamedFigures) {
     const std::optional<double> before = report.forms.front().figures.*figure, now = best.figures.*figure;
     if (!now) continue;
@@ -120,15 +164,20 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
   // A slicer tells G-code by its ending, and the file that a script gets may have another.
   const fs::path settings = scratch / "settings.gcode";
   write_bytes(original, settings);
-  const FormJob job{request, slicer, {{settings}}, scratch, is_project(request.hollow.model)};
-  const std::vector<ExtrusionMove> moves = extrusion_moves(original);
+  const fs::path& model = request.hollow.model;
+  const ProjectFacts facts = facts_of_project(options, slicer);
+  const FormJob job{request,           slicer,
+                    {{settings}},      scratch,
+                    is_project(model), object_name_in(original, facts, slicer, model)};
+  const Original read(original);
   const SlicedForm solid = slice_solid(job, log);
   log.stage("compare");
-  require_match(moves, solid, slicer, report.origin, options);
+  require_match(read, solid, slicer, report.origin, options);
   report.forms.front().slicer_seconds = solid.slicer_seconds;
   try {
     for (SlicedForm& form : slice_hollowed(hollowed, job, log)) {
-      require_same_place(form, moves);
+      require_same_place(form, read.moves);
+      require_commands(form, read);
       report.forms.push_back(std::move(form));
     }
   } catch (const NothingToRemoveError& error) {

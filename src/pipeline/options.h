@@ -57,9 +57,16 @@ struct ModifierOptions {
   double infill_percent = 0;
 };
 
+struct ObjectName {
+  const SlicerProfile* slicer = nullptr;  // one that has a format for modifiers
+  std::string name;
+};
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
+  // If given, and the output is 3MF: what this slicer is to call the object, in UTF-8.
+  std::optional<ObjectName> object_name;
   LoadOptions load;
   PackingRequest packing;
   SurfaceMode surface = SurfaceMode::automatic;

@@ -3,34 +3,65 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <string>
+#include <strings.h>
 #include <utility>
 
 #include "core/error.h"
 #include "files/formats.h"
 #include "files/load.h"
 #include "pipeline/hollow.h"
+#include "pipeline/solid_file.h"
+#include "printing/slicers/text_file.h"
 
 namespace aerate {
 namespace {
 
-// The slicer names the object after the file, so that every form keeps the model's name.
+// In the scratch folder.
 std::filesystem::path folder_of(PrintForm form, const FormJob& job) {
   std::filesystem::path folder = job.scratch / name_of(form);
   std::filesystem::create_directory(folder);
   return folder;
 }
 
-// STL as every slicer reads it, whatever the model came as.
+// What a slicer would call the model as STL.
+std::string usual_name(const FormJob& job) {
+  return job.request.hollow.model.stem().string() + ".stl";
+}
+
+std::string object_name(const FormJob& job) {
+  return job.object_name.empty() ? usual_name(job) : job.object_name;
+}
+
+// The model's file in the form's folder. STL, whose object slicers name after the file; 3MF for modifiers and
+// for other names of the object, which it carries.
+std::filesystem::path model_file(PrintForm form, const FormJob& job) {
+  const std::string stl = usual_name(job);
+  const bool as_3mf =
+      form == PrintForm::modifiers || (job.slicer.profile->modifiers && object_name(job) != stl);
+  // Slicers write a file's name into G-code, where a line feed would begin a command.
+  std::string name = on_one_line(as_3mf ? job.request.hollow.model.stem().string() + ".3mf" : stl);
+  return folder_of(form, job) / name;
+}
+
+// The name that goes into a 3MF, as text; none where it is not, or the slicer reads no names.
+std::optional<ObjectName> name_in_3mf(const FormJob& job) {
+  const std::string name = object_name(job);
+  if (!job.slicer.profile->modifiers || !is_utf8(name)) return std::nullopt;
+  return ObjectName{job.slicer.profile, on_one_line(name)};
+}
+
+// As every slicer reads it, whatever the model came as.
 void write_solid_model(const FormJob& job, const std::filesystem::path& path, Monitor& monitor) {
   monitor.stage("load");
   const HollowOptions& options = job.request.hollow;
-  write_mesh(load_model(options.model, options.load).mesh, path, MeshFormat::stl);
-}
-
-// The model's file in the form's folder.
-std::filesystem::path model_file(PrintForm form, const FormJob& job) {
-  const std::string ending = form == PrintForm::modifiers ? ".3mf" : ".stl";
-  return folder_of(form, job) / (job.request.hollow.model.stem().string() + ending);
+  const Mesh mesh = load_model(options.model, options.load).mesh;
+  const std::optional<ObjectName> name = name_in_3mf(job);
+  const bool as_3mf = path.extension() == ".3mf";
+  if (as_3mf && name) {
+    write_named(mesh, path, *name);
+  } else {
+    write_mesh(mesh, path, as_3mf ? MeshFormat::three_mf : MeshFormat::stl);
+  }
 }
 
 SlicedForm slice_file(PrintForm form, std::filesystem::path model, const FormJob& job, Monitor& monitor) {
@@ -66,6 +97,10 @@ const char* name_of(PrintForm form) {
   return "unknown";
 }
 
+bool is_project(const std::filesystem::path& model) {
+  return ::strcasecmp(model.extension().c_str(), ".3mf") == 0;
+}
+
 std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const SlicerProfile& slicer) {
   if (asked == PrintForm::modifiers && !slicer.modifiers) {
     throw UsageError(fmt::format("{} reads no modifiers", slicer.name),
@@ -89,6 +124,7 @@ std::vector<SlicedForm> slice_hollowed(const std::vector<PrintForm>& forms, cons
   for (const PrintForm form : forms) {
     HollowOptions options = job.request.hollow;
     options.output = model_file(form, job);
+    options.object_name = name_in_3mf(job);
     if (form == PrintForm::modifiers)
       options.modifiers = {job.slicer.profile, job.request.modifier_infill_percent};
     HollowReport report = write_hollowed(hollowed, options, monitor);

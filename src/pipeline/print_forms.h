@@ -57,7 +57,12 @@ struct FormJob {
   SlicerSettings settings;
   std::filesystem::path scratch;
   bool keep_place = false;  // see SliceJob
+  // What the slicer is to call the object; after the model's file, as it does of its own, if empty.
+  std::string object_name = {};
 };
+
+// Whether a model is a slicer's project, or may be one.
+bool is_project(const std::filesystem::path& model);
 
 // The forms to try. Throws UsageError for modifiers with a slicer that takes none.
 std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const SlicerProfile& slicer);

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "files/formats.h"
+#include "files/output_file.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"
@@ -27,6 +28,32 @@ void require_no_models_name(const std::filesystem::path& output) {
   if (!is_a_models_name(output)) return;
   throw UsageError(output.string() + ": a model's name, and what is written is G-code",
                    "give a name such as " + output.stem().string() + ".gcode");
+}
+
+// The settings of a print that a project holds come before the user's. A mesh is all that is sliced of it.
+SlicerSettings settings_with_project(const SliceModelOptions& options, const std::filesystem::path& scratch,
+                                     JobLog& log) {
+  SlicerSettings settings;
+  const std::filesystem::path& model = options.request.hollow.model;
+  if (!is_project(model)) return options.settings;
+  for (const SlicerProfile& slicer : slicers()) {
+    if (slicer.project == nullptr) continue;
+    const ProjectFacts facts = slicer.project(model);
+    for (const std::string& setting : facts.beyond_mesh)
+      log.notice("the project has " + on_one_line(setting) + ", which is not used: its mesh alone is sliced");
+    if (facts.settings.empty()) continue;
+    if (slicer.name != options.slicer->name) {
+      log.notice("the settings in the project are " + slicer.name + "'s and not used: give " +
+                 options.slicer->name + "'s as --config");
+      continue;
+    }
+    log.notice("the settings in the project are used where --config gives none");
+    const std::filesystem::path file = scratch / "project.ini";
+    write_bytes(facts.settings, file);
+    settings.files.push_back(file);
+  }
+  for (const std::filesystem::path& file : options.settings.files) settings.files.push_back(file);
+  return settings;
 }
 
 // Hollowing is quick beside slicing, and says sooner that nothing can be removed; then, if the form is left
@@ -52,7 +79,7 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   report.model = request.hollow.model;
   report.output = options.output;
   report.slicer = find_slicer(*options.slicer, request.slicer_path);
-  require_settings(options.settings);
+  require_settings(options.settings, *options.slicer);
   require_other_than_settings(options);
   const std::vector<PrintForm> hollowed = forms_to_try(request.form, *options.slicer);
 
@@ -61,7 +88,8 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
     log.notice("the post-processing programs of the settings are not run");
   AnnouncedFile pending(options.output, log);
   const PrivateFolder scratch(log);
-  const FormJob job{request, report.slicer, options.settings, scratch.path()};
+  const FormJob job{request, report.slicer, settings_with_project(options, scratch.path(), log),
+                    scratch.path()};
   report.forms = slice_what_can_be_hollowed(hollowed, job, log);
   report.forms.insert(report.forms.begin(), slice_solid(job, log));
   if (report.forms.size() > 1) {

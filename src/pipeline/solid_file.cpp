@@ -10,7 +10,7 @@
 namespace aerate {
 
 SolidFormat solid_format_of(const HollowOptions& options) {
-  const SolidFormat format{&format_to_write(options.output), options.modifiers};
+  const SolidFormat format{&format_to_write(options.output), options.modifiers, options.object_name};
   if (format.modifiers && format.mesh != &MeshFormat::three_mf) {
     throw UsageError(fmt::format("{}: modifiers need a 3MF file", options.output.string()),
                      "give a name that ends in .3mf, or leave out --as modifiers");
@@ -18,13 +18,23 @@ SolidFormat solid_format_of(const HollowOptions& options) {
   return format;
 }
 
+void write_named(const Mesh& mesh, const Destination& destination, const ObjectName& object) {
+  const ObjectPart whole{"model", 0, mesh.triangles.size(), false, ""};
+  write_bytes(to_3mf(mesh, object.slicer->modifiers->named(whole, object.name)), destination);
+}
+
 void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat& format) {
   if (!format.modifiers) {
-    write_mesh(solid.mesh, file, *format.mesh);
+    if (format.object_name && format.mesh == &MeshFormat::three_mf) {
+      write_named(solid.mesh, file, *format.object_name);
+    } else {
+      write_mesh(solid.mesh, file, *format.mesh);
+    }
     return;
   }
   const std::vector<ObjectPart> parts = modifier_parts(solid, format.modifiers->infill_percent);
-  const ThreeMfExtras extras = format.modifiers->slicer->modifiers->extras(parts.front(), parts.back());
+  const ThreeMfExtras extras = format.modifiers->slicer->modifiers->extras(
+      parts.front(), parts.back(), format.object_name ? format.object_name->name : "");
   write_bytes(to_3mf(with_void_shells_turned(solid.mesh, solid), extras), file);
 }
 

@@ -17,10 +17,14 @@ namespace aerate {
 struct SolidFormat {
   const MeshFormat* mesh = &MeshFormat::stl;
   std::optional<ModifierOptions> modifiers;
+  std::optional<ObjectName> object_name;
 };
 
 // Throws UsageError for an ending that cannot be written, and for modifiers in anything but a 3MF.
 SolidFormat solid_format_of(const HollowOptions& options);
+
+// A 3MF of one body, called by this name. Throws FailureError with the system's reason.
+void write_named(const Mesh& mesh, const Destination& destination, const ObjectName& object);
 
 // Throws FailureError with the system's reason.
 void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat& format);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,87 @@ TEST(GcodeMatch, MovesThatNoPrinterReachesTakeNoMemory) {
   Moves a = tower(1, 0);
   add_line(a, 0, 0, 1e12, 1e12, 0.2);
   EXPECT_TRUE(difference_of(a, a).value().find("more than can be compared") != std::string::npos);
+}
+
+TEST(GcodeMatch, AMillionLargeLayersAreQuick) {
+  Moves moves;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const double z = 0.01 * i, x = i % 2 == 0 ? 0 : 2900;
+    moves.push_back({x, x, x + 1, x, z, 1});
+  }
+  EXPECT_FALSE(difference_of(moves, moves).has_value());
+  // More than can be compared is different, not endless.
+  moves.assign(100'000, {0, 0, 2900, 2900, 0.2, 1});
+  EXPECT_DOUBLE_EQ(compare_prints(moves, moves).filament, 1);
+  EXPECT_TRUE(difference_of(moves, moves).value().find("longer than") != std::string::npos);
+}
+
+// Three layers of two features, with what a slicer puts between them.
+std::string print_with(const std::string& after_second_layer, const std::string& speed = "F1200",
+                       const std::string& in_second_layer = "", const std::string& start = "M104 S200\n") {
+  std::string gcode = start + "M83\nM107\n";
+  for (int layer = 1; layer <= 3; ++layer) {
+    gcode += "G1 Z0." + std::to_string(2 * layer) + " F7800\nG92 E0\n";
+    if (layer == 2) gcode += in_second_layer;
+    gcode += ";TYPE:Perimeter\nG1 " + (layer == 2 ? speed : "F1200") +
+             "\nG1 X10 Y0 E1\nG1 X10 Y10 E1\nG1 X0 Y10 E1\nG1 X0 Y0 E1\n"
+             ";TYPE:Internal infill\nG1 F2400\nG1 X2 Y2\nG1 X8 Y8 E2\n";
+    if (layer == 2) gcode += after_second_layer;
+  }
+  return gcode + "M104 S0\nM84 ; motors off\n";
+}
+
+std::optional<std::string> difference(const std::string& a, const std::string& b) {
+  return difference_of(log_of_print(a), log_of_print(b));
+}
+
+TEST(GcodeMatch, WhateverIsNoMoveIsMissed) {
+  const std::string plain = print_with("");
+  EXPECT_FALSE(difference(plain, plain).has_value());
+  for (const char* line :
+       {"M600", "M601", "M0", "M25", "T1", "M104 S230", "M109 S230", "M140 S60", "M220 S50", "M221 S95",
+        "M117 put the magnets in", "M190 S60", "PAUSE", "@pause", "G4 P1000", "M106 P1 S9",
+        "EXCLUDE_OBJECT_START NAME=a", "M486 S1", "; printing object a id:0 copy 0"}) {
+    const std::string with = print_with(std::string(line) + "\n");
+    const auto lost = difference(with, plain);
+    ASSERT_TRUE(lost.has_value()) << line;
+    EXPECT_TRUE(lost->find("after the layer at z = 0.40 mm, would be lost") != std::string::npos) << *lost;
+    EXPECT_TRUE(lost->find(line) != std::string::npos) << *lost;
+    EXPECT_TRUE(difference(plain, with).value().find("is not in it") != std::string::npos) << line;
+    EXPECT_FALSE(difference(with, with).has_value()) << line;
+  }
+  EXPECT_EQ(difference(print_with("M600\n"), plain).value(),
+            "line 28 of it, \"M600\" after the layer at z = 0.40 mm, would be lost");
+  // Another text, another order, another layer.
+  EXPECT_TRUE(difference(print_with("M117 block\n"), print_with("M117 model\n")).has_value());
+  EXPECT_TRUE(difference(print_with("M0\nM25\n"), print_with("M25\nM0\n")).has_value());
+  EXPECT_TRUE(difference(print_with("M600\n"), print_with("", "F1200", "M600\n")).has_value());
+  EXPECT_TRUE(difference(plain, print_with("", "F1200", "", "M104 S215\n")).has_value());
+}
+
+TEST(GcodeMatch, CommentsRetractionsAndPositionsAreNoCommands) {
+  EXPECT_FALSE(
+      difference(print_with("G92 E0\nG10 ; retract\nG11\n; a comment\n"), print_with("")).has_value());
+  EXPECT_FALSE(difference(print_with("M601 ; now\n"), print_with("M601\n")).has_value());
+  // Progress follows the times, which are compared; but a print has it or has it not.
+  EXPECT_FALSE(difference(print_with("M73 P31 R8\n"), print_with("M73 P32 R8\n")).has_value());
+  EXPECT_TRUE(difference(print_with("M73 P31 R8\n"), print_with("")).has_value());
+}
+
+TEST(GcodeMatch, SpeedFanAndAccelerationOfAFeatureAreCompared) {
+  const std::string plain = print_with("");
+  EXPECT_FALSE(difference(plain, print_with("", "F1190")).has_value());
+  EXPECT_EQ(difference(plain, print_with("", "F600")).value(),
+            "at z = 0.40 mm the feature \"Perimeter\" is printed at 10.0 mm/s instead of 20.0");
+  // A fifth slower in one layer of three is too much in all.
+  EXPECT_TRUE(difference(plain, print_with("", "F960")).value().find("minutes instead of") !=
+              std::string::npos);
+  // Slicers say the fan again or a layer later, but not another speed.
+  EXPECT_FALSE(difference(print_with("M106 S100\n"), print_with("M106 S102.55\nM106 S102.55\n")).has_value());
+  EXPECT_TRUE(difference(print_with("M106 S100\n"), plain).value().find("fan at 0 of 255 instead of 100") !=
+              std::string::npos);
+  EXPECT_FALSE(difference(print_with("M204 S500\n"), print_with("M204 S900\nM204 S500\n")).has_value());
+  EXPECT_TRUE(difference(print_with("M204 S500\n"), print_with("M204 S900\n")).has_value());
 }
 
 }  // namespace

@@ -26,6 +26,24 @@ namespace {
 namespace fs = std::filesystem;
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
+void wait_for(const fs::path& file) {
+  for (int i = 0; i < 6000 && (!fs::exists(file) || fs::file_size(file) == 0); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+// Gone, or a zombie that nobody has asked for yet.
+bool ends_within(pid_t process, std::chrono::milliseconds time) {
+  constexpr std::chrono::milliseconds kStep{10};
+  for (; time.count() > 0; time -= kStep) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/stat");
+    std::string text;
+    std::getline(status, text);
+    if (text.empty() || text.find(") Z ") != std::string::npos) return true;
+    std::this_thread::sleep_for(kStep);
+  }
+  return false;
+}
+
 class Hook : public testing::Test {
  protected:
   Hook() : fake_(folder_) {
@@ -161,6 +179,49 @@ TEST_F(Hook, RefusesAModelThatDoesNotGiveTheGcode) {
   fake_.hands_out("solid", fake_gcode(1000, 2.5));
   const std::string message = expect_refused(hook(with_model()), 3);
   EXPECT_TRUE(contains(message, "does not give the same G-code"));
+}
+
+TEST_F(Hook, KeepsTheFileIfTheModelDoesNotGiveAllItsCommands) {
+  // As a colour change and a pause that were set in the slicer's window are.
+  std::string text = fake_gcode(1000);
+  text.insert(text.find("; filament used"), "M600\nG1 X20 Y30 E1\n");
+  std::string plain = fake_gcode(1000);
+  plain.insert(plain.find("; filament used"), "G1 X20 Y30 E1\n");
+  write_gcode(text);
+  fake_.hands_out("solid", plain);
+  const std::string message = expect_refused(hook(with_model()), 3);
+  EXPECT_TRUE(contains(message, "\"M600\" after the layer at z = 0.00 mm, would be lost"));
+  EXPECT_TRUE(contains(message, "hollow the model first"));
+}
+
+TEST_F(Hook, KeepsTheFileIfTheHollowedPrintDoesLess) {
+  std::string text = fake_gcode(1000);
+  text.insert(text.find("; filament used"), "M104 S230\nG1 X20 Y10 E1\n");
+  write_gcode(text);
+  fake_.hands_out("solid", text);
+  EXPECT_TRUE(contains(expect_refused(hook(with_model()), 1), "\"M104 S230\""));
+}
+
+TEST_F(Hook, NoCharacterOfAModelsNameEndsAComment) {
+  model_ = folder_.write("evil\nM104 S999 ; \x1b[2J.stl", to_binary_stl(make_box({0, 0, 0}, {20, 20, 1})));
+  const ProcessResult result = hook(with_model());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string after = read_bytes(gcode());
+  EXPECT_TRUE(contains(after, "; aerate_remark = evil\\x0AM104 S999 ; \\x1B[2J.stl: nothing to remove"));
+  EXPECT_FALSE(contains(after, "\nM104 S999"));
+}
+
+TEST_F(Hook, TheSlicerSeesNoLineFeedInTheNameOfTheModel) {
+  // It would put it into its G-code.
+  model_ = folder_.write("a\nM999.stl", read_bytes(model_));
+  fake_.behave("printf '%s|' \"$@\" > '" + (folder_.path() / "arguments").string() + "'");
+  ASSERT_EQ(hook(with_model()).exit_code, 0);
+  EXPECT_FALSE(contains(read_bytes(folder_.path() / "arguments"), "\n"));
+}
+
+TEST_F(Hook, RefusesGcodeThatIsCutOff) {
+  fake_.hands_out("voids", fake_gcode(900).substr(0, 200));
+  EXPECT_TRUE(contains(expect_refused(hook(with_model()), 1), "wrote G-code whose end is missing"));
 }
 
 TEST_F(Hook, RefusesAFormThatTheSlicerPutElsewhere) {
@@ -306,24 +367,46 @@ TEST_F(Hook, InterruptionKillsTheSlicerAndLeavesTheFile) {
   // A program that the slicer started is ended, too.
   fake_.behave("sleep 300 & echo $! > '" + pid_file.string() + "'; wait");
   Process process(command(with_model()), {{"TMPDIR", scratch()}});
-  for (int i = 0; i < 6000 && (!fs::exists(pid_file) || fs::file_size(pid_file) == 0); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  wait_for(pid_file);
   const pid_t sleeper = std::stoi(read_bytes(pid_file));
   process.send(SIGINT);
   const ProcessResult result = process.wait();
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_EQ(read_bytes(gcode()), before_);
   expect_nothing_left();
-  // Gone, or a zombie that nobody has asked for yet.
-  bool running = true;
-  for (int i = 0; i < 500 && running; ++i) {
-    std::ifstream status("/proc/" + std::to_string(sleeper) + "/stat");
-    std::string text;
-    std::getline(status, text);
-    running = !text.empty() && text.find(") Z ") == std::string::npos;
-    if (running) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(ends_within(sleeper, std::chrono::seconds(5)));
+}
+
+TEST_F(Hook, WhenItIsKilledTheSlicerEndsAndTheNextRunCleansUp) {
+  const fs::path pid_file = folder_.path() / "pid";
+  fake_.behave("sleep 300 & echo $! > '" + pid_file.string() + "'; wait");
+  {
+    Process process(command(with_model()), {{"TMPDIR", scratch()}});
+    wait_for(pid_file);
+    process.send(SIGKILL);
+    EXPECT_EQ(process.wait().exit_code, 128 + SIGKILL);
   }
-  EXPECT_FALSE(running);
+  EXPECT_TRUE(ends_within(std::stoi(read_bytes(pid_file)), std::chrono::seconds(5)));
+  EXPECT_EQ(read_bytes(gcode()), before_);
+  ASSERT_EQ(entries_of(scratch()).size(), 1u);
+  // Of another kind, and not left by a process: both stay.
+  fs::create_directory(scratch() / "aerate-other");
+  fake_.behave("");
+  ASSERT_EQ(hook(with_model()).exit_code, 0);
+  EXPECT_EQ(entries_of(scratch()), std::vector<std::string>{"aerate-other"});
+}
+
+TEST_F(Hook, FoldersInUseStay) {
+  const fs::path pid_file = folder_.path() / "pid";
+  fake_.behave("echo $$ > '" + pid_file.string() + "'; exec sleep 300");
+  Process process(command(with_model()), {{"TMPDIR", scratch()}});
+  wait_for(pid_file);
+  const std::vector<std::string> in_use = entries_of(scratch());
+  ASSERT_EQ(in_use.size(), 1u);
+  ASSERT_EQ(hook({}).exit_code, 0);  // makes a folder of its own, and removes it
+  EXPECT_EQ(entries_of(scratch()), in_use);
+  process.send(SIGTERM);
+  EXPECT_EQ(process.wait().exit_code, 130);
 }
 
 TEST_F(Hook, PrintsTheLineToPaste) {

@@ -39,7 +39,7 @@ class ModifiersIn3mf : public testing::Test {
   std::filesystem::path file(const Solid& solid, double infill, const SlicerProfile& slicer) const {
     const std::vector<ObjectPart> parts = modifier_parts(solid, infill);
     return file(to_3mf(with_void_shells_turned(solid.mesh, solid),
-                       slicer.modifiers->extras(parts.front(), parts.back())));
+                       slicer.modifiers->extras(parts.front(), parts.back(), "")));
   }
 
   TemporaryFolder folder_;

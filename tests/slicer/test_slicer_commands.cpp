@@ -285,6 +285,148 @@ TEST_F(Slicing, AProjectOfPrusaSlicerItself) {
   EXPECT_TRUE(contains(read_bytes(output()), "; aerate_result = modifiers\n"));
 }
 
+// --- what a mesh does not carry ---
+
+const std::vector<std::string> kDense{
+    "--layer-height", "0.3",         "--first-layer-height", "0.3",
+    "--perimeters",   "2",           "--fill-density",       "100%",
+    "--fill-pattern", "rectilinear", "--bed-shape",          "0x0,200x0,200x200,0x200"};
+
+std::vector<std::string> dense_with(const std::vector<std::string>& more) {
+  std::vector<std::string> options = kDense;
+  options.insert(options.end(), more.begin(), more.end());
+  return options;
+}
+
+fs::path project(const std::string& name) {
+  return fs::path(AERATE_TEST_DATA) / "projects" / (name + ".3mf");
+}
+
+TEST_F(Slicing, TheHookLosesNothingThatAProjectHas) {
+  AERATE_NEEDS("prusa-slicer");
+  // What the message says of the project, and of its G-code where the model is given as a mesh.
+  struct Case {
+    std::string name, in_project, in_gcode;
+    std::vector<std::string> options;
+  };
+  const fs::path block = model("block.stl", make_box({0, 0, 0}, {30, 30, 20})),
+                 small = model("small.stl", make_box({0, 0, 0}, {16, 16, 12}));
+  const std::vector<Case> cases{
+      {"colour_change",
+       "colour changes, pauses or G-code between layers",
+       "\"M600\" after the layer at z = 5.70 mm",
+       {}},
+      {"object_speed", "settings of the object (external_perimeter_speed = 10)", "is printed at", {}},
+      {"range_speed", "settings of layers", "layers are at other heights", {}},
+      {"extruder2",
+       "settings of the object (extruder = 2)",
+       "would be lost",
+       {"--single-extruder-multi-material", "--nozzle-diameter", "0.4,0.4", "--temperature", "200,240",
+        "--first-layer-temperature", "200,245"}},
+      {"painted_seam", "painted seams", "", {}}};
+  for (const Case& each : cases) {
+    SCOPED_TRACE(each.name);
+    std::vector<std::string> options = dense_with(each.options);
+    options.emplace_back("--dont-arrange");
+    slice_with_prusa(project(each.name), output(), options);
+    const std::string before = read_bytes(output());
+    const ProcessResult result =
+        run({AERATE_EXECUTABLE, "hook", "--model", project(each.name), "--max-radius", "5", output()});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_TRUE(contains(result.err, "the project has " + each.in_project + ", which would be lost"));
+    EXPECT_EQ(read_bytes(output()), before);
+    if (each.in_gcode.empty()) continue;
+    const ProcessResult as_mesh =
+        run({AERATE_EXECUTABLE, "hook", "--model", each.name == "extruder2" ? small : block, "--max-radius",
+             "5", output()});
+    EXPECT_EQ(as_mesh.exit_code, 3) << as_mesh.err;
+    EXPECT_TRUE(contains(as_mesh.err, each.in_gcode));
+    EXPECT_EQ(read_bytes(output()), before);
+  }
+}
+
+TEST_F(Slicing, TheHookKeepsTheNameOfTheObject) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path start = folder_.write(
+      "vars.ini",
+      "start_gcode = G28\\nM117 [input_filename_base] {total_layer_count}\\n\ngcode_label_objects = 1\n");
+  // A project whose object has another name than its file, the same without labels, and a mesh.
+  const fs::path part = model("it's a <part> & more.stl", make_box({0, 0, 0}, {16, 16, 12}));
+  struct Case {
+    fs::path model;
+    std::string label, place;
+  };
+  for (const Case& each : {Case{project("small"), "block", "--dont-arrange"},
+                           Case{part, "it's a <part> & more.stl", "--scale=1"}}) {
+    for (const std::string labels : {"1", "0"}) {
+      SCOPED_TRACE(each.label + labels);
+      slice_with_prusa(each.model, output(),
+                       dense_with({"--load", start, each.place, "--gcode-label-objects=" + labels}));
+      const ProcessResult result =
+          run({AERATE_EXECUTABLE, "hook", "--model", each.model, "--max-radius", "5", output()});
+      ASSERT_EQ(result.exit_code, 0) << result.err;
+      const std::string gcode = read_bytes(output());
+      EXPECT_TRUE(contains(gcode, "; aerate_result = modifiers\n"));
+      EXPECT_TRUE(contains(gcode, "\nM117 " + fs::path(each.label).stem().string() + " 40\n"));
+      const std::string label = "\n; printing object " + each.label + " id:0 copy 0\n";
+      EXPECT_EQ(gcode.find(label) != std::string::npos, labels == "1");
+    }
+  }
+}
+
+TEST_F(Slicing, TheSettingsInAProjectAreUsed) {
+  AERATE_NEEDS("prusa-slicer");
+  const ProcessResult result = slice(project("with_settings"), "prusa-slicer", {"--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "the settings in the project are used"));
+  EXPECT_NEAR(Json::parse(result.out)["forms"][0]["filament_mm"].get<double>(), 1292.73, 0.5);
+  if (!is_installed("slic3r")) return;
+  EXPECT_TRUE(contains(slice(project("with_settings"), "slic3r", {}).err,
+                       "the settings in the project are prusa-slicer's and not used"));
+}
+
+TEST_F(Slicing, ABundleOfPresetsIsNoFileOfSettings) {
+  const FakeSlicer fake(folder_);
+  const fs::path bundle = folder_.write("bundle.ini", "# generated\n\n[print:my]\nlayer_height = 0.3\n");
+  for (const char* slicer : {"prusa-slicer", "slic3r"}) {
+    const ProcessResult result =
+        slice(block(), slicer, {"--slicer-path", fake.program(), "--config", bundle});
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_TRUE(contains(result.err, "is a bundle of presets ([print:my])"));
+  }
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
+TEST_F(Slicing, Slic3rRunsNoProgramOfTheSettings) {
+  AERATE_NEEDS("slic3r");
+  const fs::path mark = folder_.path() / "mark",
+                 script = folder_.write("script.sh", "#!/bin/sh\ntouch '" + mark.string() + "'\n");
+  fs::permissions(script, fs::perms::owner_all);
+  for (const char* blank : {"", " ", "\t", "\v", "\f", "\r"}) {
+    const fs::path config = folder_.write("settings.ini", std::string("layer_height = 0.3\n") + blank +
+                                                              "post_process = " + script.string() + "\n");
+    const ProcessResult result = slice(block(), "slic3r", {"--config", config});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(contains(result.err, "post-processing programs of the settings are not run"));
+    EXPECT_FALSE(fs::exists(mark)) << static_cast<int>(blank[0]);
+  }
+}
+
+TEST_F(Slicing, GcodeThatIsCutOffIsNotWritten) {
+  // As slicers leave it that do not mind that the disk is full.
+  const FakeSlicer fake(folder_);
+  const std::string whole = fake_gcode(1000);
+  fake.hands_out("voids", whole);
+  fake.hands_out("modifiers", whole);
+  for (const std::size_t size : {whole.size() - 5, whole.size() / 2}) {
+    fake.hands_out("solid", whole.substr(0, size));
+    const ProcessResult result = slice(block(), "prusa-slicer", {"--slicer-path", fake.program()});
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_TRUE(contains(result.err, "wrote G-code whose end is missing"));
+    EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+  }
+}
+
 TEST_F(Slicing, TheHookKnowsARoundModelAgainThoughItsSeamsMove) {
   AERATE_NEEDS("prusa-slicer");
   // PrusaSlicer puts the seams of one and the same model elsewhere from run to run.

@@ -1,0 +1,159 @@
+#include "printing/slicers/print_log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+
+#include "printing/slicers/gcode_machine.h"
+#include "printing/slicers/text_file.h"
+
+namespace aerate {
+namespace {
+
+// How a command enters the log.
+enum class CommandKind { listed, fan, acceleration, position, progress, tool };
+
+bool has_word(const CommandWord& command, std::string_view letters) {
+  return command.rest.find_first_of(letters) != std::string_view::npos;
+}
+
+CommandKind kind_of(const CommandWord& command) {
+  if (command.letter == 'T') return CommandKind::tool;
+  if (command.letter == 'G' && command.code == 92) return CommandKind::position;
+  if (command.letter == 'G' && (command.code == 10 || command.code == 11) && !has_word(command, "PLRXYZ"))
+    return CommandKind::position;  // a retraction
+  if (command.letter != 'M') return CommandKind::listed;
+  if (command.code == 73) return CommandKind::progress;
+  if (command.code == 204) return CommandKind::acceleration;
+  // A fan of another number is no business of the slicer's cooling.
+  if ((command.code == 106 || command.code == 107) && !has_word(command, "P")) return CommandKind::fan;
+  return CommandKind::listed;
+}
+
+std::optional<double> word_of(const CommandWord& command, char wanted) {
+  std::optional<double> found;
+  for_each_word(command.rest, [&](char letter, double value) {
+    if (letter == wanted) found = std::clamp(value, 0.0, GcodeMachine::kLargestCoordinate);
+  });
+  return found;
+}
+
+// The name of an object stands in a comment in PrusaSlicer's labels.
+bool marks_object(std::string_view line) {
+  return line.starts_with("; printing object ") || line.starts_with("; stop printing object ");
+}
+
+class LogMaker {
+ public:
+  void read(std::string_view line) {
+    ++line_;
+    constexpr std::string_view kFeature = ";TYPE:";
+    if (line.starts_with(kFeature)) {
+      feature_ = line.substr(kFeature.size());
+      extruding_ = false;
+    } else if (marks_object(line)) {
+      add_command(line);
+    } else if (machine_.run(line)) {
+      add_extrusion();
+    } else if (machine_.moved()) {
+      if (machine_.travelled()) extruding_ = false;
+    } else if (const std::string_view command = command_in(line); !command.empty()) {
+      read_command(command);
+    }
+  }
+
+  PrintLog finish() {
+    // The lines after the last extrusion end the print.
+    auto& last = log_.commands[layer_];
+    const auto end = last.begin() + static_cast<std::ptrdiff_t>(commands_at_extrusion_);
+    log_.commands[kAfterLastLayer].assign(end, last.end());
+    last.erase(end, last.end());
+    for (auto& [layer, commands] : log_.commands) {
+      if (layer != kBeforeFirstLayer && layer != kAfterLastLayer)
+        std::erase_if(commands, [](const PrintCommand& command) {
+          const auto word = command_word(command.text);
+          return word && kind_of(*word) == CommandKind::fan;
+        });
+    }
+    for (auto& [key, totals] : log_.features) {
+      totals.fan /= totals.filament;
+      totals.acceleration /= totals.filament;
+    }
+    std::erase_if(log_.commands, [](const auto& commands) { return commands.second.empty(); });
+    return std::move(log_);
+  }
+
+ private:
+  void add_command(std::string_view text) {
+    log_.commands[layer_].push_back({line_, std::string(without_blanks(text))});
+  }
+
+  void read_command(std::string_view text) {
+    const auto word = command_word(text);
+    switch (word ? kind_of(*word) : CommandKind::listed) {
+      case CommandKind::progress:
+        log_.tells_progress = true;
+        return;
+      case CommandKind::position:
+        return;
+      case CommandKind::acceleration:
+        if (const auto value = word_of(*word, 'S')) acceleration_ = *value;
+        if (const auto value = word_of(*word, 'P')) acceleration_ = *value;
+        return;
+      case CommandKind::fan:
+        fan_ = word->code == 106 ? word_of(*word, 'S').value_or(kFullFan) : 0;
+        break;
+      case CommandKind::tool:
+        tool_ = word->code;
+        break;
+      case CommandKind::listed:
+        break;
+    }
+    add_command(text);
+  }
+
+  void add_extrusion() {
+    layer_ = layer_at(machine_.z());
+    commands_at_extrusion_ = log_.commands[layer_].size();
+    FeatureTotals& totals =
+        log_.features[{layer_, tool_ == 0 ? feature_ : fmt::format("{} by T{}", feature_, tool_)}];
+    if (!extruding_) ++totals.begins;
+    extruding_ = true;
+    const double filament = machine_.filament(), length = machine_.length();
+    totals.filament += filament;
+    totals.length += length;
+    if (machine_.feed() > 0) totals.minutes += length / machine_.feed();
+    totals.fan += filament * fan_;
+    totals.acceleration += filament * acceleration_;
+  }
+
+  static constexpr double kFullFan = 255;
+
+  PrintLog log_;
+  GcodeMachine machine_;
+  std::size_t line_ = 0;
+  std::int64_t layer_ = kBeforeFirstLayer;
+  std::size_t commands_at_extrusion_ = 0;  // of that layer
+  std::string feature_;
+  int tool_ = 0;
+  double fan_ = 0, acceleration_ = 0;
+  bool extruding_ = false;
+};
+
+}  // namespace
+
+std::int64_t layer_at(double z) {
+  return std::llround(z * 100);
+}
+
+PrintLog log_of_print(std::string_view gcode) {
+  LogMaker maker;
+  for_each_line(gcode, [&](std::string_view line) {
+    maker.read(line);
+    return true;
+  });
+  return maker.finish();
+}
+
+}  // namespace aerate
