@@ -290,7 +290,7 @@ std::optional<std::string> difference_in_commands(const PrintLog& a, const Print
 }
 
 std::optional<std::string> difference_of(const PrintLog& a, const PrintLog& b) {
-  if (const auto difference = difference_in_commands(a, b)) return difference;
+  if (auto difference = difference_in_commands(a, b)) return difference;
   return difference_in_features(a, b);
 }
 

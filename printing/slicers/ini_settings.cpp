@@ -25,6 +25,11 @@ bool names_programs(std::string_view key) {
   return lower == kPostProcess;
 }
 
+// "prusaslicer_config = begin": no setting, and there twice.
+bool marks_block(const SettingLine& setting) {
+  return setting.key.ends_with("_config") && (setting.value == "begin" || setting.value == "end");
+}
+
 std::string_view without_mark(std::string_view text) {
   constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
   return text.starts_with(kUtf8Mark) ? text.substr(kUtf8Mark.size()) : text;
@@ -40,6 +45,7 @@ std::string plain_settings(std::string_view text) {
     line = without_blanks(line);
     if (line.starts_with('#') || line.starts_with(';') != in_comments) return true;
     const auto setting = setting_in_line(line);
+    if (in_comments && setting && marks_block(*setting)) return true;
     if (setting && is_key(setting->key) && !names_programs(setting->key))
       plain.append(setting->key).append(" = ").append(setting->value).append("\n");
     return true;

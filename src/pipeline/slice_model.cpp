@@ -47,7 +47,7 @@ SlicerSettings settings_with_project(const SliceModelOptions& options, const std
                  options.slicer->name + "'s as --config");
       continue;
     }
-    log.notice("the settings in the project are used, and those of --config instead of them");
+    log.notice("the settings in the project are used where --config gives none");
     const std::filesystem::path file = scratch / "project.ini";
     write_bytes(facts.settings, file);
     settings.files.push_back(file);

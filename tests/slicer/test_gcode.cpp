@@ -178,6 +178,7 @@ TEST(Gcode, SettingsAreHandedOnWithoutPrograms) {
   const std::string of_gcode = plain_settings(kPrusa);
   EXPECT_TRUE(of_gcode.find("fill_density = 15%\n") != std::string::npos);
   EXPECT_TRUE(of_gcode.find("post_process = ") == std::string::npos);
+  EXPECT_TRUE(of_gcode.find("prusaslicer_config") == std::string::npos);
   EXPECT_TRUE(of_gcode.find("post_process_extra = no\n") != std::string::npos);
 }
 
