@@ -25,6 +25,9 @@ if(AERATE_SANITIZE)
   set(sanitize "-fsanitize=${AERATE_SANITIZE}" -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_compile_options(aerate_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${sanitize}>")
   target_link_options(aerate_options INTERFACE "-fsanitize=${AERATE_SANITIZE}")
+  if(AERATE_SANITIZE STREQUAL "thread")
+    target_compile_definitions(aerate_options INTERFACE TBB_USE_PROFILING_TOOLS=2)  # tests/tsan/tbb_edges.cpp
+  endif()
 endif()
 
 # aerate_add_library(NAME sources...): a static library of the project with its common options.
