@@ -150,14 +150,14 @@ std::string ThreeMfPackage::model_by_relation() const {
   const pugi::xml_document relations = parsed(text_of(kRelations));
   for (const pugi::xml_node relation : relations.child("Relationships").children("Relationship")) {
     if (!std::string_view(relation.attribute("Type").as_string()).ends_with(kModelRelation)) continue;
-    const std::string target = without_escapes(relation.attribute("Target").as_string());
+    std::string target = without_escapes(relation.attribute("Target").as_string());
     if (has(target)) return target;
   }
   return {};
 }
 
 std::string ThreeMfPackage::model() const {
-  const std::string named = model_by_relation();
+  std::string named = model_by_relation();
   if (!named.empty()) return key_of(named) == key_of(kThreeMfModel) ? kThreeMfModel : named;
   if (has(kThreeMfModel)) return kThreeMfModel;
   std::vector<std::string> models;

@@ -4,7 +4,6 @@
 #include <expat.h>
 #include <fmt/format.h>
 #include <new>
-#include <ranges>
 
 namespace aerate {
 
@@ -108,10 +107,9 @@ std::size_t XmlStream::column() const {
 }
 
 std::string_view XmlStream::namespace_of(std::string_view prefix) const {
-  for (const Declaration& declaration : declarations_ | std::views::reverse) {
-    if (declaration.prefix == prefix) return declaration.name;
-  }
-  return {};
+  const auto last = std::find_if(declarations_.rbegin(), declarations_.rend(),
+                                 [&](const Declaration& d) { return d.prefix == prefix; });
+  return last == declarations_.rend() ? std::string_view() : last->name;
 }
 
 }  // namespace aerate

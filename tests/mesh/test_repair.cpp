@@ -113,8 +113,11 @@ TEST(WithoutRepeatedVertices, LeavesOutThoseTrianglesAlone) {
   const Mesh box = make_box({0, 0, 0}, {1, 2, 3});
   Mesh mesh = box;
   mesh.positions.push_back({9, 9, 9});
-  mesh.triangles.insert(mesh.triangles.begin(), {4, 4, 8});
-  mesh.triangles.insert(mesh.triangles.begin() + 5, {1, 0, 1});
+  mesh.triangles.assign(1, {4, 4, 8});
+  for (const Triangle& t : box.triangles) {
+    mesh.triangles.push_back(t);
+    mesh.triangles.push_back({1, 0, 1});
+  }
   mesh.triangles.push_back({2, 2, 2});
   const Repaired repaired = without_repeated_vertices(mesh);
   ASSERT_EQ(repaired.mesh.triangles.size(), 12u);
