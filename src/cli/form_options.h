@@ -16,7 +16,7 @@ struct FormOptions {
   FormOptions(CLI::App& command, const ConfigFile& config);
   // Throws UsageError for options that contradict each other.
   FormRequest request(const ModelOptions& model) const;
-  std::vector<NamedInput> inputs() const { return packing_.inputs(); }
+  std::vector<NamedInput> inputs(const ModelOptions& model) const { return packing_.inputs(model.path); }
 
  private:
   PackingCommandOptions packing_;

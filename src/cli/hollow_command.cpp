@@ -132,8 +132,8 @@ struct HollowCommand {
 
   void run() const {
     const HollowOptions options = to_pipeline();
-    JobFiles files{packing.inputs(), {options.output}};
-    files.inputs.insert(files.inputs.begin(), {{"model", options.model}, {"list of spheres", spheres}});
+    JobFiles files{packing.inputs(model.path), {options.output}};
+    files.inputs.push_back({"list of spheres", spheres});
     run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
   }
 

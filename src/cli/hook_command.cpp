@@ -73,8 +73,7 @@ struct HookCommand {
     options.gcode = gcode;
     options.request = form.request(model);
     // Slicers show what a script writes to standard error as an error: notices go into the report alone.
-    JobFiles files{form.inputs(), {options.gcode}};
-    files.inputs.insert(files.inputs.begin(), {"model", options.request.hollow.model});
+    JobFiles files{form.inputs(model), {options.gcode}};
     run_reported(
         run_options, files, [&](Monitor& monitor) { return run_hook(options, monitor); }, Verbosity::quiet);
   }

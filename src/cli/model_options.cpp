@@ -122,8 +122,8 @@ PackingRequest PackingCommandOptions::request() const {
   return request;
 }
 
-std::vector<NamedInput> PackingCommandOptions::inputs() const {
-  return {{"configuration file", config_.path()}, {"process file", process_.file()}};
+std::vector<NamedInput> PackingCommandOptions::inputs(const std::filesystem::path& model) const {
+  return {{"model", model}, {"configuration file", config_.path()}, {"process file", process_.file()}};
 }
 
 RunOptions::RunOptions(CLI::App& command) {

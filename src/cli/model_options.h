@@ -44,8 +44,8 @@ struct PackingCommandOptions {
   PackingCommandOptions(CLI::App& command, const ConfigFile& config);
   // Throws UsageError for options that contradict each other.
   PackingRequest request() const;
-  // The files that the options come from.
-  std::vector<NamedInput> inputs() const;
+  // The model and the files that the options come from.
+  std::vector<NamedInput> inputs(const std::filesystem::path& model) const;
 
  private:
   const ConfigFile& config_;

@@ -27,8 +27,7 @@ struct PackCommand {
     options.load = model.load();
     options.weld = model.weld;
     options.packing = packing.request();
-    JobFiles files{packing.inputs(), {options.output}};
-    files.inputs.insert(files.inputs.begin(), {"model", options.model});
+    JobFiles files{packing.inputs(model.path), {options.output}};
     run_reported(run_options, files, [&](Monitor& monitor) { return pack(options, monitor); });
   }
 

@@ -55,8 +55,7 @@ struct SliceCommand {
 
   void run() const {
     const SliceModelOptions options = to_pipeline();
-    JobFiles files{form.inputs(), {options.output}};
-    files.inputs.insert(files.inputs.begin(), {"model", options.request.hollow.model});
+    JobFiles files{form.inputs(model), {options.output}};
     for (const std::string& file : settings) files.inputs.push_back({"file of settings", file});
     run_reported(run_options, files, [&](Monitor& monitor) { return slice_model(options, monitor); });
   }
