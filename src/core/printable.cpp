@@ -8,12 +8,12 @@ namespace aerate {
 namespace {
 
 struct Shape {
-  unsigned char mask, lead;  // of the first byte
   std::size_t length;
-  std::uint32_t least;  // what needs as many bytes
+  std::uint32_t least;       // what needs as many bytes
+  unsigned char mask, lead;  // of the first byte
 };
 constexpr Shape kShapes[] = {
-    {0x80, 0x00, 1, 0}, {0xe0, 0xc0, 2, 0x80}, {0xf0, 0xe0, 3, 0x800}, {0xf8, 0xf0, 4, 0x10000}};
+    {1, 0, 0x80, 0x00}, {2, 0x80, 0xe0, 0xc0}, {3, 0x800, 0xf0, 0xe0}, {4, 0x10000, 0xf8, 0xf0}};
 
 // Of the character at the front of `text` in UTF-8; 0 if there is none that may be shown.
 std::size_t shown_length(std::string_view text) {
