@@ -44,9 +44,12 @@ class NearPoints {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const Vec3d reach{reach_, reach_, reach_};
       const Vec3d low = cube_of(points_[i] - reach), high = cube_of(points_[i] + reach);
-      for (double x = low.x; x <= high.x; ++x)
-        for (double y = low.y; y <= high.y; ++y)
-          for (double z = low.z; z <= high.z; ++z) look_into({x, y, z}, i, f);
+      // Two cubes at most along each axis.
+      for (unsigned corner = 0; corner < 8; ++corner) {
+        const bool x = (corner & 1u) != 0, y = (corner & 2u) != 0, z = (corner & 4u) != 0;
+        if ((x && low.x == high.x) || (y && low.y == high.y) || (z && low.z == high.z)) continue;
+        look_into({x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z}, i, f);
+      }
     }
   }
 
