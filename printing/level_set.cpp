@@ -154,10 +154,12 @@ LevelSet LevelSet::of_ball(Vec3d centre, double radius, double voxel_size) {
 
 LevelSet LevelSet::of_balls(std::span<const Sphere> balls, double voxel_size) {
   auto grid = openvdb::createLevelSet<openvdb::FloatGrid>(voxel_size, kBandVoxels);
-  openvdb::tools::ParticlesToLevelSet<openvdb::FloatGrid> raster(*grid);
-  raster.rasterizeSpheres(BallList{balls});
-  raster.finalize();
-  assert(!raster.ignoredParticles());
+  if (!balls.empty()) {  // OpenVDB takes the first one unseen
+    openvdb::tools::ParticlesToLevelSet<openvdb::FloatGrid> raster(*grid);
+    raster.rasterizeSpheres(BallList{balls});
+    raster.finalize();
+    assert(!raster.ignoredParticles());
+  }
   return LevelSet(std::make_unique<Grid>(Grid{std::move(grid)}));
 }
 

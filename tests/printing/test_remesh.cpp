@@ -201,6 +201,14 @@ TEST(Remesh, StopsWhenInterrupted) {
   EXPECT_THROW(level_set_of(block, 0.5).subtract({}, {}, monitor), InterruptedError);
 }
 
+TEST(Remesh, WithoutVoidsOnlyTheSurfaceIsThere) {
+  const ModelLevelSet model = level_set_of(test::make_box({0, 0, 0}, {20, 20, 20}), 0.5);
+  Monitor monitor;
+  const Solid solid = model.subtract({}, {}, monitor);
+  EXPECT_EQ(solid.mesh.triangles, model.surface().triangles);
+  EXPECT_EQ(solid.parts.size(), 1u);
+}
+
 class Subtract : public testing::Test {
  protected:
   Mesh block_ = test::make_box({0, 0, 0}, {30, 20, 20});
