@@ -129,7 +129,7 @@ void refuse_cracks(const PreparedModel& model) {
                   "each other but for {:.3g} mm",
                   name_of(model), plural(crack->rim.edge_count, "edge", "edges"), crack->rim.centre.x,
                   crack->rim.centre.y, crack->rim.centre.z, crack->rim.diameter, crack->width),
-      fmt::format("join what is so near with --weld {}", at_least(2 * crack->width)));
+      fmt::format("join what is so near with --weld {}", at_least(crack->weld)));
 }
 
 // The surface cannot be kept because it is open; says what would help.
@@ -158,7 +158,16 @@ void turn_outward(PreparedModel& model, Monitor& monitor) {
     adopt(model, orient_outward(std::move(model.mesh)), monitor);
 }
 
-// What would damage a model that has to be mended: cracks as well as doubled bodies.
+// Where bodies of both directions lie in one place, which of them go decides about what is solid: then all stay.
+void unite(PreparedModel& model, Monitor& monitor) {
+  constexpr double kSameVolume = 0.01;
+  Repaired united = unite_doubles(model.mesh);
+  const double before = model.inspection.filled_volume, after = inspect(united.mesh).filled_volume;
+  if (model.inspection.closed() && std::abs(after - before) > kSameVolume * std::abs(before)) return;
+  adopt(model, std::move(united), monitor);
+}
+
+// What is damaged whatever becomes of the surface.
 void mend(PreparedModel& model, const SurfacePolicy& policy, Monitor& monitor) {
   if (model.inspection.open_edges > 0) {
     Repaired closed = close_cracks(std::move(model.mesh), weld_tolerance(model.inspection, policy));
@@ -166,7 +175,7 @@ void mend(PreparedModel& model, const SurfacePolicy& policy, Monitor& monitor) {
   }
   if (std::ranges::any_of(model.mesh.triangles, has_repeated_vertex))
     adopt(model, without_repeated_vertices(std::move(model.mesh)), monitor);
-  if (model.inspection.duplicate_triangles > 0) adopt(model, unite_doubles(std::move(model.mesh)), monitor);
+  if (model.inspection.duplicate_triangles > 0) unite(model, monitor);
   if (model.inspection.misoriented_edges > 0)
     adopt(model, orient_consistently(std::move(model.mesh)), monitor);
 }

@@ -42,7 +42,7 @@ TEST(DamagedModel, CracksOfNoWidthAreClosedAndSaid) {
   const double expected = volume_of(job.output());
   const ProcessResult result = run(job.hollow(cracked));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(contains(result.err, "cracks of no width are closed"));
+  EXPECT_TRUE(contains(result.err, "cracks are closed"));
   EXPECT_TRUE(contains(result.out, "kept as they were"));
   EXPECT_NEAR(volume_of(job.output()), expected, 0.01 * expected);
   EXPECT_TRUE(inspect(load_model(job.output()).mesh).closed());
@@ -99,6 +99,17 @@ TEST(DamagedModel, BodiesInOnePlaceAreOne) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(contains(result.err, "taken once"));
   EXPECT_TRUE(contains(result.out, "of 27000"));
+}
+
+// A cavity twice and a body in it once are a hollow, which one cavity less would fill.
+TEST(DamagedModel, DoublesGoOnlyWhereWhatIsSolidStaysSo) {
+  const Mesh inner = make_box({10, 10, 10}, {20, 20, 20});
+  const Mesh cavity = turned_inside_out(inner);
+  const Job job;
+  const auto model = job.input("hollow.stl", join(join(join(block(), cavity), cavity), inner));
+  const ProcessResult result = run({AERATE_EXECUTABLE, "inspect", model});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_FALSE(contains(result.out, "taken once"));
 }
 
 TEST(DamagedModel, InspectSaysWhatHollowWillDo) {

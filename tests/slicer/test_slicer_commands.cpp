@@ -155,7 +155,7 @@ TEST_F(Slicing, RefusesToWriteOverItsSettings) {
   const ProcessResult result =
       slice(block(), "prusa-slicer", {"--slicer-path", fake.program(), "--config", output()});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_TRUE(contains(result.err, "the output is a file of settings"));
+  EXPECT_TRUE(contains(result.err, "the output is the file of settings"));
   EXPECT_EQ(read_bytes(output()), "fill_density = 40%\n");
 }
 
