@@ -127,7 +127,7 @@ LoadedModel import_with_assimp(const std::string& name, const PlainFile& file, c
   const aiScene* scene = importer.ReadFileFromMemory(file.bytes.data(), file.bytes.size(), 0, extension);
   if (scene == nullptr) fail_to_read(name, "cannot be read: {}", last_error(importer));
   if (needs_triangulation(*scene)) scene = triangulate(importer, name);
-  LoadedModel model{.mesh = {}, .format = {}, .part_count = 0};
+  LoadedModel model{.mesh = {}, .format = {}, .part_count = 0, .notices = file.notices};
   Welder welder(file.triangles);
   if (scene->mRootNode != nullptr)
     add_node(*scene, *scene->mRootNode, placement, factor, name, welder, model);

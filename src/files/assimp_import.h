@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "files/part_writer.h"
 
@@ -16,7 +17,8 @@ inline constexpr std::size_t kMostInstancedTriangles = std::size_t{1} << 25;
 // A file in the plainest form of a format: triangles and polygons, and what tells parts apart.
 struct PlainFile {
   std::string bytes;
-  std::size_t triangles = 0;  // that it promises, where a polygon of n corners counts n - 2
+  std::size_t triangles = 0;              // that it promises, where a polygon of n corners counts n - 2
+  std::vector<std::string> notices = {};  // see LoadedModel
 };
 
 // Reads through assimp, which is lenient: it reads past missing data with zeros, leaves out what it cannot use

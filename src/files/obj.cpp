@@ -75,7 +75,8 @@ class ObjCheck {
     return token.substr(0, comment);
   }
 
-  // Three coordinates, which a weight or a colour may follow, with or without its opacity.
+  // Three coordinates, which may be followed by a weight, which is for curves alone, or a colour, with or without
+  // its opacity.
   void read_vertex() {
     constexpr std::size_t kMostNumbers = 7;
     std::array<std::string_view, kMostNumbers> numbers;
@@ -88,8 +89,7 @@ class ObjCheck {
     if (count < 3) lines_.fail("a vertex of fewer than three coordinates: truncated?");
     if (count == 5) lines_.fail("a vertex of {} numbers", count);
     plain_.bytes += 'v';
-    const std::size_t kept = count == 4 ? 4 : 3;
-    for (std::size_t i = 0; i < kept; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       // assimp counts what begins with a point as no number, and leaves out the vertex.
       plain_.bytes += numbers[i].starts_with('.') ? " 0" : " ";
       plain_.bytes += numbers[i];

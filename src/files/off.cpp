@@ -24,6 +24,11 @@ class OffCheck {
     read_header();
     for (std::int64_t i = 0; i < vertices_; ++i) read_vertex(i);
     for (std::int64_t i = 0; i < faces_; ++i) read_face(i);
+    if (!next_token().empty())
+      plain_.notices.push_back(
+          fmt::format("from line {} on more follows than the {} faces that the header promises; it is left "
+                      "out",
+                      lines_.number(), faces_));
     return std::move(plain_);
   }
 

@@ -105,10 +105,23 @@ class PlyCheck {
     vertices_ = vertex->count;
     if (is_text()) lines_.emplace(file_, position_);
     for (const Element& element : elements_) walk(element);
-    return {plain_header(*vertex) + coordinates_ + faces_, triangles_};
+    PlainFile plain{plain_header(*vertex) + coordinates_ + faces_, triangles_};
+    if (more_follows())
+      plain.notices.emplace_back("more follows than the elements that the header promises; it is left out");
+    return plain;
   }
 
  private:
+  // A line end is no more.
+  bool more_follows() {
+    if (!is_text()) return text_.size() - position_ > 2;
+    while (const auto line = lines_->next()) {
+      std::string_view rest = *line;
+      if (!take_token(rest).empty()) return true;
+    }
+    return false;
+  }
+
   void read_header() {
     if (header_line() != "ply") fail("not a PLY file: its first line is not 'ply'");
     for (std::string_view line = header_line(); line != "end_header"; line = header_line()) {

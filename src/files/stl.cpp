@@ -61,6 +61,11 @@ std::size_t check_binary(const InputFile& file, std::vector<std::string>& notice
   const std::size_t held = (file.size - kPreambleBytes) / kFacetBytes;
   const std::size_t needed = kPreambleBytes + promised * kFacetBytes;
   const bool is_whole = file.size == kPreambleBytes + held * kFacetBytes;
+  if (!is_whole && promised > 0 && held == promised) {
+    notices.push_back(fmt::format("{} bytes follow after the {} triangles that the STL header promises",
+                                  file.size - needed, promised));
+    return promised;
+  }
   if (!is_whole || (held == 0 && promised != 0)) {
     throw InputError(
         fmt::format(

@@ -196,6 +196,10 @@ std::string read_3mf_entry(const std::filesystem::path& path, const std::string&
   zip_stat_t facts;
   zip_stat_init(&facts);
   if (zip_stat(archive.get(), name.c_str(), 0, &facts) != 0) throw not_as_written(path, name + " is missing");
+  // Deflate makes a thousandth of zeros at the very best.
+  constexpr zip_uint64_t kMostPerByte = 1100;
+  if (facts.size / kMostPerByte > facts.comp_size)
+    throw not_as_written(path, name + " cannot be as long as it says");
   std::string content(facts.size, '\0');
   zip_file_t* file = zip_fopen_index(archive.get(), facts.index, 0);
   if (file == nullptr) throw not_as_written(path, name + " cannot be opened");

@@ -329,6 +329,7 @@ class ModelPartReader final : public XmlStream {
       }
     }
     if (!take_word(rest).empty()) fail("transform=\"{}\" is more than twelve numbers", shown(text));
+    if (transform.linear().determinant() == 0) fail("transform=\"{}\" leaves nothing of a body", shown(text));
     return transform;
   }
 

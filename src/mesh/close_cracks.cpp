@@ -44,9 +44,12 @@ class NearPoints {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const Vec3d reach{reach_, reach_, reach_};
       const Vec3d low = cube_of(points_[i] - reach), high = cube_of(points_[i] + reach);
-      for (double x = low.x; x <= high.x; ++x)
-        for (double y = low.y; y <= high.y; ++y)
-          for (double z = low.z; z <= high.z; ++z) look_into({x, y, z}, i, f);
+      // Two cubes at most along each axis.
+      for (unsigned corner = 0; corner < 8; ++corner) {
+        const bool x = (corner & 1u) != 0, y = (corner & 2u) != 0, z = (corner & 4u) != 0;
+        if ((x && low.x == high.x) || (y && low.y == high.y) || (z && low.z == high.z)) continue;
+        look_into({x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z}, i, f);
+      }
     }
   }
 
@@ -295,14 +298,13 @@ Closed close_completely(const JoinedVertices& joined, std::vector<VertexPair> pa
 std::vector<std::string> words_for(std::size_t moved, double farthest, const FilledSlits& slits) {
   std::vector<std::string> notices;
   if (moved > 0)
-    notices.push_back(fmt::format("cracks of no width are closed: {} moved, by {:.3g} mm at most",
+    notices.push_back(fmt::format("cracks are closed: {} moved, by {:.3g} mm at most",
                                   moved == 1 ? "1 vertex is" : fmt::format("{} vertices are", moved),
                                   farthest));
   if (slits.triangles > 0)
     notices.push_back(fmt::format(
-        "{} without width close{} cracks along edges that meet others in the middle (at most {:.3g} mm wide)",
-        slits.triangles == 1 ? "1 triangle" : fmt::format("{} triangles", slits.triangles),
-        slits.triangles == 1 ? "s" : "", slits.widest));
+        "cracks along edges that meet others in the middle are closed: by {}, {:.3g} mm wide at most",
+        slits.triangles == 1 ? "1 triangle" : fmt::format("{} triangles", slits.triangles), slits.widest));
   return notices;
 }
 
@@ -311,6 +313,36 @@ Closed close_within(const Mesh& mesh, const std::vector<OpenEdge>& open, double 
   JoinedVertices joined(mesh, tolerance);
   join_facing_edges(mesh, open, tolerance, joined);
   return close_completely(joined, near_ends(joined.joined(), tolerance), tolerance);
+}
+
+// Those of the rims, of at least this size, that have no open edge left.
+std::vector<BoundaryChain> closed_rims(const Mesh& mesh, const std::vector<BoundaryChain>& rims, double size,
+                                       Closed& closed) {
+  const std::vector<std::uint32_t> still_open = ends_of(open_edges(closed.mesh, EdgeUses(closed.mesh)));
+  std::vector<BoundaryChain> found;
+  for (const BoundaryChain& rim : rims) {
+    const bool is_closed = std::ranges::none_of(rim.vertices, [&](std::uint32_t vertex) {
+      return std::ranges::binary_search(still_open, closed.joined.place_of(vertex));
+    });
+    if (is_closed && describe_loop(mesh, rim).diameter >= size) found.push_back(rim);
+  }
+  return found;
+}
+
+BoundaryLoop largest_of(const Mesh& mesh, const std::vector<BoundaryChain>& rims) {
+  BoundaryLoop largest;
+  for (const BoundaryChain& rim : rims) {
+    const BoundaryLoop loop = describe_loop(mesh, rim);
+    if (loop.diameter > largest.diameter) largest = loop;
+  }
+  return largest;
+}
+
+double widest_of(const std::vector<BoundaryChain>& rims, Closed& closed) {
+  double width = closed.slits.widest;
+  for (const BoundaryChain& rim : rims)
+    for (const std::uint32_t vertex : rim.vertices) width = std::max(width, closed.joined.reach_of(vertex));
+  return width;
 }
 
 }  // namespace
@@ -333,7 +365,8 @@ Repaired close_cracks(Mesh mesh, double tolerance) {
 
 std::optional<Crack> find_crack(const Mesh& mesh) {
   // Of each size of rims, those are looked at that are so many times as large as what is joined.
-  constexpr double kSizes = 50, kLargestShare = 0.1, kSteps = 4;
+  constexpr double kSizes = 50, kLargestShare = 0.1, kWider = 1.5;
+  constexpr int kSteps = 4;
   const EdgeUses uses(mesh);
   const std::vector<OpenEdge> open = open_edges(mesh, uses);
   const std::vector<BoundaryChain> rims = chain_boundary(mesh, uses);
@@ -341,20 +374,17 @@ std::optional<Crack> find_crack(const Mesh& mesh) {
   double size = kLargestShare * length(to_double(box.upper) - to_double(box.lower));
   for (int step = 0; step < kSteps && !open.empty(); ++step, size /= 4) {
     Closed closed = close_within(mesh, open, size / kSizes);
-    const std::vector<std::uint32_t> still_open = ends_of(open_edges(closed.mesh, EdgeUses(closed.mesh)));
-    std::optional<Crack> largest;
-    for (const BoundaryChain& rim : rims) {
-      const BoundaryLoop loop = describe_loop(mesh, rim);
-      if (loop.diameter < size || (largest && loop.diameter <= largest->rim.diameter)) continue;
-      const bool is_closed = std::ranges::none_of(rim.vertices, [&](std::uint32_t vertex) {
-        return std::ranges::binary_search(still_open, closed.joined.place_of(vertex));
-      });
-      if (!is_closed) continue;
-      double width = closed.slits.widest;
-      for (const std::uint32_t vertex : rim.vertices) width = std::max(width, closed.joined.reach_of(vertex));
-      largest = {loop, width};
+    const std::vector<BoundaryChain> cracks = closed_rims(mesh, rims, size, closed);
+    if (cracks.empty()) continue;
+    Crack crack{largest_of(mesh, cracks), widest_of(cracks, closed), size / kSizes};
+    // Joining is greedy: what is little wider than the crack need not do.
+    for (double weld = 2 * crack.width; weld > 0 && weld < size / kSizes; weld *= kWider) {
+      Closed tried = close_within(mesh, open, weld);
+      if (closed_rims(mesh, cracks, size, tried).size() != cracks.size()) continue;
+      crack.weld = weld;
+      break;
     }
-    if (largest) return largest;
+    return crack;
   }
   return std::nullopt;
 }

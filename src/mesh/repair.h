@@ -26,7 +26,8 @@ Repaired close_cracks(Mesh mesh, double tolerance);
 // A rim that is no hole: its sides lie on each other, no further apart than a fiftieth of its size.
 struct Crack {
   BoundaryLoop rim;
-  double width;  // mm: close_cracks closes it with twice that
+  double width;  // mm
+  double weld;   // with which close_cracks closes it and all that are as wide, mm
 };
 
 // The largest crack among the boundary's loops, if there is one.

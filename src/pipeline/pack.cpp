@@ -106,7 +106,7 @@ constexpr double kMostlyOverlapped = 0.5;
   const double fitting = largest.radius - limits.wall;
   if (model.inspection.overlapped_volume > kMostlyOverlapped * model.inspection.filled_volume) {
     throw NothingToRemoveError(
-        fmt::format("{}: nothing to remove: parts overlap in {:.3g} of {:.3g} mm3, which stay solid", file,
+        fmt::format("{}: nothing to remove: parts overlap in {:.5g} of {:.5g} mm3, which stay solid", file,
                     model.inspection.overlapped_volume, model.inspection.filled_volume),
         "--surface remesh of 'aerate hollow' unites the parts");
   }

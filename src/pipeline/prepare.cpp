@@ -119,22 +119,8 @@ double weld_tolerance(const Inspection& inspection, const SurfacePolicy& policy)
   return policy.weld.value_or(std::min(kRoundingShare * diagonal_of(inspection.box), kMostRounding));
 }
 
-// Filling a crack as if it were a hole would cut through the model.
-void refuse_cracks(const PreparedModel& model) {
-  const auto crack = find_crack(model.mesh);
-  if (!crack) return;
-  throw MeshError(
-      fmt::format("{}: the surface is cracked: {} of a rim near ({:.1f}, {:.1f}, {:.1f}) mm, {:.3g} mm "
-                  "across, lie on "
-                  "each other but for {:.3g} mm",
-                  name_of(model), plural(crack->rim.edge_count, "edge", "edges"), crack->rim.centre.x,
-                  crack->rim.centre.y, crack->rim.centre.z, crack->rim.diameter, crack->width),
-      fmt::format("join what is so near with --weld {}", at_least(2 * crack->width)));
-}
-
 // The surface cannot be kept because it is open; says what would help.
 [[noreturn]] void refuse_open(const PreparedModel& model, const SurfacePolicy& policy) {
-  refuse_cracks(model);
   const double largest = model.inspection.boundary_loops.front().diameter;
   throw MeshError(
       fmt::format("{}: {}", name_of(model), holes_in_words(model.inspection)),
@@ -158,15 +144,40 @@ void turn_outward(PreparedModel& model, Monitor& monitor) {
     adopt(model, orient_outward(std::move(model.mesh)), monitor);
 }
 
-// What would damage a model that has to be mended: cracks as well as doubled bodies.
+// Where bodies of both directions lie in one place, which of them go decides about what is solid: then all stay.
+void unite(PreparedModel& model, Monitor& monitor) {
+  constexpr double kSameVolume = 0.01;
+  Repaired united = unite_doubles(model.mesh);
+  const double before = model.inspection.filled_volume, after = inspect(united.mesh).filled_volume;
+  if (model.inspection.closed() && std::abs(after - before) > kSameVolume * std::abs(before)) return;
+  adopt(model, std::move(united), monitor);
+}
+
+// Filling a crack as if it were a hole would cut through the model.
+// What helps is judged on the model as it is, for that is what another --weld begins with.
+void require_no_cracks(const PreparedModel& model, const Mesh& closed) {
+  const auto left = find_crack(closed);
+  if (!left) return;
+  const Crack crack = find_crack(model.mesh).value_or(*left);
+  throw MeshError(
+      fmt::format("{}: the surface is cracked: {} of a rim near ({:.1f}, {:.1f}, {:.1f}) mm, {:.3g} mm "
+                  "across, lie on "
+                  "each other but for {:.3g} mm",
+                  name_of(model), plural(crack.rim.edge_count, "edge", "edges"), crack.rim.centre.x,
+                  crack.rim.centre.y, crack.rim.centre.z, crack.rim.diameter, crack.width),
+      fmt::format("join what is so near with --weld {}", at_least(crack.weld)));
+}
+
+// What is damaged whatever becomes of the surface.
 void mend(PreparedModel& model, const SurfacePolicy& policy, Monitor& monitor) {
   if (model.inspection.open_edges > 0) {
-    Repaired closed = close_cracks(std::move(model.mesh), weld_tolerance(model.inspection, policy));
+    Repaired closed = close_cracks(model.mesh, weld_tolerance(model.inspection, policy));
+    require_no_cracks(model, closed.mesh);
     adopt(model, std::move(closed), monitor);
   }
   if (std::ranges::any_of(model.mesh.triangles, has_repeated_vertex))
     adopt(model, without_repeated_vertices(std::move(model.mesh)), monitor);
-  if (model.inspection.duplicate_triangles > 0) adopt(model, unite_doubles(std::move(model.mesh)), monitor);
+  if (model.inspection.duplicate_triangles > 0) unite(model, monitor);
   if (model.inspection.misoriented_edges > 0)
     adopt(model, orient_consistently(std::move(model.mesh)), monitor);
 }
@@ -242,7 +253,6 @@ Remeshed remesh_without_loss(const PreparedModel& model, const SurfacePolicy& po
 PreparedModel remesh(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor) {
   monitor.stage("remesh");
   if (model.inspection.open_edges > 0) {
-    refuse_cracks(model);
     if (!holes_are_small(model.inspection, policy)) refuse_open(model, policy);
     adopt(model, fill_holes(std::move(model.mesh), hole_limit(model.inspection, policy)), monitor);
   }
@@ -331,10 +341,8 @@ std::string use_of(PreparedModel model, const SurfacePolicy& policy) {
   try {
     require_size(model);
     mend(model, policy, done);
-    if (surface_mode(model, policy) == SurfaceMode::remesh) {
-      refuse_cracks(model);
+    if (surface_mode(model, policy) == SurfaceMode::remesh)
       return "'aerate hollow' meshes the surface anew, which closes its holes (see --max-hole)";
-    }
     static_cast<void>(keep(std::move(model), policy, done));
   } catch (const MeshError& error) {
     return fmt::format("none: {}; {}", error.what(), error.hint());

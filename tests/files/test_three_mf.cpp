@@ -77,17 +77,18 @@ TEST_F(ThreeMf, ComponentsAreTheMeshInOrder) {
 
 TEST_F(ThreeMf, BytesDependOnWhatIsWrittenAlone) {
   const Mesh mesh = make_box({0, 0, 0}, {1, 2, 3});
-  const std::string once = to_3mf(mesh, {{}, "a program", {{"Metadata/a", "b"}}});
+  const std::string once = to_3mf(mesh, {.application = "a program", .entries = {{"Metadata/a", "b"}}});
   setenv("TZ", "Asia/Tokyo", 1);
   tzset();
-  const std::string again = to_3mf(mesh, {{}, "a program", {{"Metadata/a", "b"}}});
+  const std::string again = to_3mf(mesh, {.application = "a program", .entries = {{"Metadata/a", "b"}}});
   unsetenv("TZ");
   tzset();
   EXPECT_EQ(once, again);
 }
 
 TEST_F(ThreeMf, GivesEntriesBack) {
-  const auto path = file(to_3mf(make_box({0, 0, 0}, {1, 2, 3}), {{}, "a program", {{"Metadata/a", "b"}}}));
+  const auto path = file(
+      to_3mf(make_box({0, 0, 0}, {1, 2, 3}), {.application = "a program", .entries = {{"Metadata/a", "b"}}}));
   EXPECT_EQ(read_3mf_entry(path, "Metadata/a"), "b");
   EXPECT_TRUE(contains(read_3mf_entry(path, kThreeMfModel), "<metadata name=\"Application\">a program<"));
   EXPECT_TRUE(contains(message_of<FailureError>([&] { read_3mf_entry(path, "Metadata/c"); }),

@@ -123,7 +123,7 @@ TEST(CloseCracks, AnEdgeThatMeetsOthersInItsMiddleIsClosedWithoutMovingAnything)
     EXPECT_NEAR(inspection.volume, 8000, 1);
     EXPECT_EQ(closed.mesh.triangles.size(), mesh.triangles.size() + 1);
     ASSERT_EQ(closed.notices.size(), 1u);
-    EXPECT_TRUE(contains(closed.notices[0], "1 triangle without width"));
+    EXPECT_TRUE(contains(closed.notices[0], "by 1 triangle"));
   }
 }
 
@@ -163,7 +163,17 @@ TEST(FindCrack, TellsTwoRimsThatLieOnEachOtherAndHowFarApart) {
   ASSERT_TRUE(crack);
   EXPECT_GT(crack->rim.diameter, 60);
   EXPECT_NEAR(crack->width, std::hypot(0.02, 0.01), 1e-4);
-  EXPECT_TRUE(inspect(close_cracks(box_in_halves(40, {0.02F, 0.01F, 0}), 2 * crack->width).mesh).closed());
+  EXPECT_TRUE(inspect(close_cracks(box_in_halves(40, {0.02F, 0.01F, 0}), crack->weld).mesh).closed());
+}
+
+TEST(FindCrack, ItsWeldIsEnoughWhereEveryCornerIsElsewhere) {
+  for (const double by : {1e-4, 1e-3, 5e-3}) {
+    const Mesh apart = with_corners_apart(make_box({0, 0, 0}, {20, 20, 20}), by);
+    const auto crack = find_crack(apart);
+    ASSERT_TRUE(crack) << by;
+    EXPECT_TRUE(inspect(close_cracks(apart, crack->weld).mesh).closed()) << by;
+    EXPECT_LT(crack->weld, 20 * by);
+  }
 }
 
 TEST(FindCrack, AnOpenBoxHasNone) {

@@ -374,7 +374,7 @@ TEST_F(Hook, InterruptionKillsTheSlicerAndLeavesTheFile) {
   EXPECT_EQ(result.exit_code, 130) << result.err;
   EXPECT_EQ(read_bytes(gcode()), before_);
   expect_nothing_left();
-  EXPECT_TRUE(ends_within(sleeper, std::chrono::seconds(5)));
+  EXPECT_TRUE(ends_within(sleeper, std::chrono::seconds(60)));
 }
 
 TEST_F(Hook, WhenItIsKilledTheSlicerEndsAndTheNextRunCleansUp) {
@@ -386,7 +386,7 @@ TEST_F(Hook, WhenItIsKilledTheSlicerEndsAndTheNextRunCleansUp) {
     process.send(SIGKILL);
     EXPECT_EQ(process.wait().exit_code, 128 + SIGKILL);
   }
-  EXPECT_TRUE(ends_within(std::stoi(read_bytes(pid_file)), std::chrono::seconds(5)));
+  EXPECT_TRUE(ends_within(std::stoi(read_bytes(pid_file)), std::chrono::seconds(60)));
   EXPECT_EQ(read_bytes(gcode()), before_);
   ASSERT_EQ(entries_of(scratch()).size(), 1u);
   // Of another kind, and not left by a process: both stay.

@@ -118,7 +118,8 @@ TEST_F(Slicing, ShowsAllThatAFailingSlicerPrinted) {
   fake.behave("echo first; echo second >&2; echo third; exit 3");
   const ProcessResult result = slice(block(), "prusa-slicer", {"--slicer-path", fake.program()});
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(contains(result.err, "failed with status 3 on block.stl; it printed:\nfirst\nsecond\nthird\n"));
+  EXPECT_TRUE(
+      contains(result.err, "failed with status 3 on block.stl; it printed:\n  first\n  second\n  third\n"));
   EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
 }
 
@@ -154,7 +155,7 @@ TEST_F(Slicing, RefusesToWriteOverItsSettings) {
   const ProcessResult result =
       slice(block(), "prusa-slicer", {"--slicer-path", fake.program(), "--config", output()});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_TRUE(contains(result.err, "the output is a file of settings"));
+  EXPECT_TRUE(contains(result.err, "the output is the file of settings"));
   EXPECT_EQ(read_bytes(output()), "fill_density = 40%\n");
 }
 
