@@ -159,7 +159,7 @@ Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Spher
   }
 }
 
-Sphere largest_inscribed_sphere(const SurfaceIndex& surface) {
+Sphere largest_inscribed_sphere(const SurfaceIndex& surface, Monitor& monitor) {
   constexpr std::size_t kSteps = 48;
   const Vec3d lower = surface.winding().box.lower;
   const Vec3d extent = surface.winding().box.upper - lower;
@@ -168,20 +168,23 @@ Sphere largest_inscribed_sphere(const SurfaceIndex& surface) {
     return surface.winding().winding_number(p) == 1 ? distance_of(surface.bvh(), p, kInfinity) : 0.0;
   };
   std::vector<Sphere> starts(kSteps * kSteps * kSteps);
-  tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
-    const auto fraction = [](std::size_t step) { return (static_cast<double>(step) + 0.5) / kSteps; };
-    const Vec3d p = lower + Vec3d{extent.x * fraction(i % kSteps), extent.y * fraction(i / kSteps % kSteps),
-                                  extent.z * fraction(i / (kSteps * kSteps))};
-    starts[i] = {p, clearance(p), SphereKind::adaptive};
-  });
+  const auto fraction = [](std::size_t step) { return (static_cast<double>(step) + 0.5) / kSteps; };
+  for (std::size_t layer = 0; layer < kSteps; ++layer) {
+    monitor.check_interrupted();
+    constexpr std::size_t kPlaces = kSteps * kSteps;
+    tbb::parallel_for(layer * kPlaces, (layer + 1) * kPlaces, [&](std::size_t i) {
+      const Vec3d p = lower + Vec3d{extent.x * fraction(i % kSteps), extent.y * fraction(i / kSteps % kSteps),
+                                    extent.z * fraction(i / (kSteps * kSteps))};
+      starts[i] = {p, clearance(p), SphereKind::adaptive};
+    });
+  }
   std::stable_sort(starts.begin(), starts.end(),
                    [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; });
   starts.resize(32);
 
   // Pattern search: try the 26 neighbours at a step that halves when none is better.
   const double first_step = std::max({extent.x, extent.y, extent.z}) / kSteps;
-  tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
-    Sphere& best = starts[i];
+  const auto improve = [&](Sphere& best) {
     for (double step = first_step; step > 1e-3 * first_step;) {
       Sphere next = best;
       for (int direction = 0; direction < 27; ++direction) {
@@ -197,7 +200,12 @@ Sphere largest_inscribed_sphere(const SurfaceIndex& surface) {
         step /= 2;
       }
     }
-  });
+  };
+  constexpr std::size_t kAtOnce = 4;
+  for (std::size_t first = 0; first < starts.size(); first += kAtOnce) {
+    monitor.check_interrupted();
+    tbb::parallel_for(first, first + kAtOnce, [&](std::size_t i) { improve(starts[i]); });
+  }
   return *std::max_element(starts.begin(), starts.end(),
                            [](const Sphere& a, const Sphere& b) { return a.radius < b.radius; });
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/monitor.h"
 #include "core/packing.h"
 #include "core/surface_index.h"
 #include "kernels/roof.h"
@@ -48,7 +49,8 @@ Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Spher
                               const Roof& roof = {});
 
 // The largest ball inside the model where its winding number is 1, touching the surface (no wall); radius 0
-// if there is none. For the message when nothing fits under the limits: accurate to about 1 %.
-Sphere largest_inscribed_sphere(const SurfaceIndex& surface);
+// if there is none. For the message when nothing fits under the limits: accurate to about 1 %. Throws
+// InterruptedError.
+Sphere largest_inscribed_sphere(const SurfaceIndex& surface, Monitor& monitor);
 
 }  // namespace aerate

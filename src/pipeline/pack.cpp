@@ -95,10 +95,10 @@ constexpr double kMostlyOverlapped = 0.5;
 
 // Says what would fit, and which limit stands in the way.
 [[noreturn]] void refuse_empty(const PreparedModel& model, const SurfaceIndex& surface,
-                               const PackingRequest& request) {
+                               const PackingRequest& request, Monitor& monitor) {
   const PackingLimits limits = request.limits();
   const std::string file = model.input.path.filename().string();
-  const Sphere largest = largest_inscribed_sphere(surface);
+  const Sphere largest = largest_inscribed_sphere(surface, monitor);
   // Rounded first, so that nothing reads as -0.0.
   const auto tenths = [](double coordinate) { return std::round(coordinate * 10) / 10 + 0.0; };
   const std::string place = fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", tenths(largest.centre.x),
@@ -179,7 +179,7 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
   if (!request.spheres.empty()) require_no_fault(surface, packing, request);
   packing = verify_packing(surface, std::move(packing));
   monitor.check_interrupted();
-  if (packing.spheres.empty()) refuse_empty(model, surface, request);
+  if (packing.spheres.empty()) refuse_empty(model, surface, request, monitor);
 
   if (model.inspection.parts_overlap() && packing.statistics.overlapped_region > 0)
     monitor.notice(
