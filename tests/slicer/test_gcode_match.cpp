@@ -136,10 +136,31 @@ std::optional<std::string> difference(const std::string& a, const std::string& b
 TEST(GcodeMatch, WhateverIsNoMoveIsMissed) {
   const std::string plain = print_with("");
   EXPECT_FALSE(difference(plain, plain).has_value());
-  for (const char* line :
-       {"M600", "M601", "M0", "M25", "T1", "M104 S230", "M109 S230", "M140 S60", "M220 S50", "M221 S95",
-        "M117 put the magnets in", "M190 S60", "PAUSE", "@pause", "G4 P1000", "M106 P1 S9",
-        "EXCLUDE_OBJECT_START NAME=a", "M486 S1", "; printing object a id:0 copy 0"}) {
+  for (const char* line : {"M600",
+                           "M601",
+                           "M0",
+                           "M25",
+                           "T1",
+                           "M104 S230",
+                           "M109 S230",
+                           "M140 S60",
+                           "M220 S50",
+                           "M221 S95",
+                           "M117 put the magnets in",
+                           "M190 S60",
+                           "PAUSE",
+                           "@pause",
+                           "G4 P1000",
+                           "M106 P1 S9",
+                           "EXCLUDE_OBJECT_START NAME=a",
+                           "M486 S1",
+                           "; printing object a id:0 copy 0",
+                           "G92 X50 Y50",
+                           "G92",
+                           "M204 R100",
+                           "G0 X5 Y195 F9000",
+                           "G1 X-30 F6000",
+                           "G1 Z60 F600"}) {
     const std::string with = print_with(std::string(line) + "\n");
     const auto lost = difference(with, plain);
     ASSERT_TRUE(lost.has_value()) << line;
@@ -155,6 +176,40 @@ TEST(GcodeMatch, WhateverIsNoMoveIsMissed) {
   EXPECT_TRUE(difference(print_with("M0\nM25\n"), print_with("M25\nM0\n")).has_value());
   EXPECT_TRUE(difference(print_with("M600\n"), print_with("", "F1200", "M600\n")).has_value());
   EXPECT_TRUE(difference(plain, print_with("", "F1200", "", "M104 S215\n")).has_value());
+}
+
+TEST(GcodeMatch, FilamentThroughTheStandingNozzleIsMissed) {
+  const std::string plain = print_with("");
+  EXPECT_EQ(
+      difference(print_with("G1 E25 F200\n"), plain).value(),
+      "0.0 mm of filament goes through the standing nozzle instead of 25.0 after the layer at z = 0.40 mm");
+  EXPECT_TRUE(difference(plain, print_with("G1 E25 F200\n")).has_value());
+  EXPECT_TRUE(difference(print_with("G1 E10\nG1 E10\nG1 E5\n"), plain).value().find("of 25.0") !=
+              std::string::npos);
+  EXPECT_TRUE(
+      difference(print_with("G1 E-30 F900\n"), plain).value().find("stays retracted instead of 30.0") !=
+      std::string::npos);
+  // What is retracted and given back, on the spot or along a wipe, with a little more or less.
+  for (const char* retraction : {"G1 E-5\nG1 E5\n", "G1 E-1\nG1 X3 Y3 E-4\nG1 X1 Y1\nG1 E5\n",
+                                 "G1 E-5\nG1 E5.2\n", "G1 E-5\nG1 E4.8\n"})
+    EXPECT_FALSE(difference(print_with(retraction), plain).has_value()) << retraction;
+}
+
+TEST(GcodeMatch, TravelsWithinThePrintAreTheSlicers) {
+  const std::string plain = print_with("");
+  for (const char* travel : {"G1 X3 Y3 F7800\n", "G1 X-3 Y13 F7800\n", "G1 Z2 F7800\nG1 X3\nG1 Z.6\n"})
+    EXPECT_FALSE(difference(print_with(travel + std::string("G1 X8 Y8\n")), plain).has_value()) << travel;
+  // By G91 they are none of the slicer's, wherever they lead.
+  EXPECT_TRUE(difference(print_with("G91\nG1 X1\nG90\nM83\n"), print_with("G91\nG90\nM83\n")).has_value());
+}
+
+TEST(GcodeMatch, AccelerationsOfTravelsAreMissed) {
+  EXPECT_EQ(difference(print_with("M204 T100\n"), print_with("")).value(),
+            "line 28 of it, \"M204 T100\" would be lost");
+  EXPECT_TRUE(difference(print_with("M204 S50 T100\n"), print_with("M204 S50\n")).has_value());
+  // The slicer writes them where the travels are, here a layer sooner.
+  const std::string late = print_with("M204 T100\n"), soon = print_with("", "F1200", "M204 T100\n");
+  EXPECT_FALSE(difference(late, soon).has_value());
 }
 
 TEST(GcodeMatch, CommentsRetractionsAndPositionsAreNoCommands) {
