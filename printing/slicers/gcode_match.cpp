@@ -178,18 +178,25 @@ double relative_difference(double a, double b) {
 constexpr double kTooLittle = 0.05;        // mm of filament in a feature that nothing is said of
 constexpr double kFeatureFilament = 0.02;  // relative
 constexpr double kSpeedInALayer = 0.3;     // relative
+constexpr double kPerimeterSpeed = 0.1;    // the same
 constexpr double kTimeInAll = 0.03;        // relative, of a feature
 constexpr double kFanSpeed = 13;           // of 255
 constexpr double kAcceleration = 0.02;     // relative
 constexpr double kBegins = 0.1;            // relative, beside one
 
+double speed_tolerance(std::string_view feature) {
+  const bool is_perimeter = feature.starts_with("Perimeter") || feature.starts_with("External perimeter");
+  return is_perimeter ? kPerimeterSpeed : kSpeedInALayer;
+}
+
 // What is different in a feature of a layer that both prints have; nothing if it is the same.
-std::optional<std::string> difference_in_feature(const FeatureTotals& a, const FeatureTotals& b) {
+std::optional<std::string> difference_in_feature(std::string_view feature, const FeatureTotals& a,
+                                                 const FeatureTotals& b) {
   if (std::abs(a.filament - b.filament) > kTooLittle + kFeatureFilament * a.filament)
     return fmt::format("takes {:.2f} mm of filament instead of {:.2f}", b.filament, a.filament);
   if (std::min(a.filament, b.filament) < kTooLittle) return std::nullopt;
   const double speed_a = a.length / a.minutes / 60, speed_b = b.length / b.minutes / 60;
-  if (a.minutes > 0 && b.minutes > 0 && relative_difference(speed_a, speed_b) > kSpeedInALayer)
+  if (a.minutes > 0 && b.minutes > 0 && relative_difference(speed_a, speed_b) > speed_tolerance(feature))
     return fmt::format("is printed at {:.1f} mm/s instead of {:.1f}", speed_b, speed_a);
   if (std::abs(a.fan - b.fan) > kFanSpeed)
     return fmt::format("has the fan at {:.0f} of 255 instead of {:.0f}", b.fan, a.fan);
@@ -227,7 +234,7 @@ std::optional<std::string> difference_in_features(const PrintLog& a, const Print
       if (log == &b && a.features.contains(key)) continue;  // seen already
       const auto& [layer, feature] = key;
       const FeatureTotals &in_a = of(a, key), &in_b = of(b, key);
-      if (const auto difference = difference_in_feature(in_a, in_b))
+      if (const auto difference = difference_in_feature(feature, in_a, in_b))
         return fmt::format("at z = {:.2f} mm the feature \"{}\" {}", static_cast<double>(layer) / 100,
                            feature, *difference);
       FeatureSums& sum = sums[feature];

@@ -6,11 +6,19 @@
 #include <optional>
 #include <utility>
 
+#include "printing/slicers/gcode.h"
 #include "printing/slicers/gcode_machine.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
 namespace {
+
+// Repetier's sets the acceleration of prints by M201 and that of travels by M202; of others these are limits.
+enum class Firmware { any, repetier };
+
+Firmware firmware_of(std::string_view gcode) {
+  return setting_in(gcode, "gcode_flavor") == "repetier" ? Firmware::repetier : Firmware::any;
+}
 
 // How a command enters the log.
 enum class CommandKind { listed, fan, acceleration, position, progress, tool };
@@ -24,7 +32,7 @@ bool has_only(const CommandWord& command, std::string_view letters) {
   return command.rest.find_first_not_of(std::string(letters).append(kOfNumbers)) == std::string_view::npos;
 }
 
-CommandKind kind_of(const CommandWord& command) {
+CommandKind kind_of(const CommandWord& command, Firmware firmware) {
   if (command.letter == 'T') return CommandKind::tool;
   if (command.letter == 'G' && command.code == 92)
     return has_word(command, "E") && !has_word(command, "XYZ") ? CommandKind::position : CommandKind::listed;
@@ -33,6 +41,9 @@ CommandKind kind_of(const CommandWord& command) {
   if (command.letter != 'M') return CommandKind::listed;
   if (command.code == 73) return CommandKind::progress;
   if (command.code == 204) return has_only(command, "SPT") ? CommandKind::acceleration : CommandKind::listed;
+  if (firmware == Firmware::repetier && (command.code == 201 || command.code == 202) &&
+      has_only(command, "XY"))
+    return CommandKind::acceleration;
   // A fan of another number is no business of the slicer's cooling.
   if ((command.code == 106 || command.code == 107) && !has_word(command, "P")) return CommandKind::fan;
   return CommandKind::listed;
@@ -53,6 +64,8 @@ bool marks_object(std::string_view line) {
 
 class LogMaker {
  public:
+  explicit LogMaker(Firmware firmware) : firmware_(firmware) {}
+
   void read(std::string_view line) {
     ++line_;
     constexpr std::string_view kFeature = ";TYPE:";
@@ -80,9 +93,9 @@ class LogMaker {
     for (auto& [layer, commands] : log_.commands) {
       std::erase_if(commands, [&](const PrintCommand& command) { return stays_near(command); });
       if (layer != kBeforeFirstLayer && layer != kAfterLastLayer)
-        std::erase_if(commands, [](const PrintCommand& command) {
+        std::erase_if(commands, [this](const PrintCommand& command) {
           const auto word = command_word(command.text);
-          return word && kind_of(*word) == CommandKind::fan;
+          return word && kind_of(*word, firmware_) == CommandKind::fan;
         });
     }
     for (auto& [key, totals] : log_.features) {
@@ -98,19 +111,28 @@ class LogMaker {
     log_.commands[layer_].push_back({line_, std::string(without_blanks(text))});
   }
 
+  void set_acceleration(const CommandWord& word, std::string_view text) {
+    const bool of_travels = word.code == 202;
+    for_each_word(word.rest, [&](char letter, double value) {
+      value = std::clamp(value, 0.0, GcodeMachine::kLargestCoordinate);
+      if (letter == 'T' || of_travels) {
+        log_.travel_accelerations.try_emplace(value, PrintCommand{line_, std::string(text)});
+      } else {
+        acceleration_ = value;
+      }
+    });
+  }
+
   void read_command(std::string_view text) {
     const auto word = command_word(text);
-    switch (word ? kind_of(*word) : CommandKind::listed) {
+    switch (word ? kind_of(*word, firmware_) : CommandKind::listed) {
       case CommandKind::progress:
         log_.tells_progress = true;
         return;
       case CommandKind::position:
         return;
       case CommandKind::acceleration:
-        if (const auto value = word_of(*word, 'S')) acceleration_ = *value;
-        if (const auto value = word_of(*word, 'P')) acceleration_ = *value;
-        if (const auto value = word_of(*word, 'T'))
-          log_.travel_accelerations.try_emplace(*value, PrintCommand{line_, std::string(text)});
+        set_acceleration(*word, text);
         return;
       case CommandKind::fan:
         fan_ = word->code == 106 ? word_of(*word, 'S').value_or(kFullFan) : 0;
@@ -176,6 +198,7 @@ class LogMaker {
 
   static constexpr double kFullFan = 255;
 
+  Firmware firmware_;
   PrintLog log_;
   GcodeMachine machine_;
   std::size_t line_ = 0;
@@ -205,7 +228,7 @@ std::int64_t layer_at(double z) {
 }
 
 PrintLog log_of_print(std::string_view gcode) {
-  LogMaker maker;
+  LogMaker maker(firmware_of(gcode));
   for_each_line(gcode, [&](std::string_view line) {
     maker.read(line);
     return true;

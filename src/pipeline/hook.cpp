@@ -28,6 +28,9 @@ constexpr const char* kHollowFirst =
     "first "
     "('aerate hollow') and set it there";
 
+constexpr const char* kHollowInsteadOfFuzzy =
+    "switch fuzzy skin off, or hollow the model first ('aerate hollow')";
+
 constexpr const char* kNoFormHoldsAll =
     "inside a hollow there may be supports, layers and tools that the solid print has not: try --as "
     "modifiers "
@@ -74,10 +77,14 @@ void require_same_place(const SlicedForm& form, const std::vector<ExtrusionMove>
 
 // What the G-code holds that is compared with what the model gives.
 struct Original {
-  explicit Original(std::string_view gcode) : moves(extrusion_moves(gcode)), log(log_of_print(gcode)) {}
+  explicit Original(std::string_view gcode)
+      : moves(extrusion_moves(gcode)),
+        log(log_of_print(gcode)),
+        has_fuzzy_skin(setting_in(gcode, "fuzzy_skin").value_or("none") != "none") {}
 
   std::vector<ExtrusionMove> moves;
   PrintLog log;
+  bool has_fuzzy_skin;
 };
 
 void require_match(const Original& original, const SlicedForm& solid, const Slicer& slicer,
@@ -87,6 +94,7 @@ void require_match(const Original& original, const SlicedForm& solid, const Slic
   const bool is_elsewhere = difference.has_value();
   if (!difference) difference = difference_of(original.log, log_of_print(gcode));
   if (!difference) return;
+  if (original.has_fuzzy_skin) *difference += ": fuzzy skin is random, so it cannot be compared";
   const std::string slicer_name = origin_of(gcode).name;
   throw InputError(
       fmt::format("{}: sliced with the settings of {} it does not give the same G-code ({})",
@@ -94,6 +102,7 @@ void require_match(const Original& original, const SlicedForm& solid, const Slic
       slicer_name != origin.name
           ? fmt::format("the G-code is by {}, and {} is {}: give the program that made it as --slicer-path",
                         origin.name, slicer.program.string(), slicer_name)
+      : original.has_fuzzy_skin ? kHollowInsteadOfFuzzy
       : is_elsewhere
           ? "it has to be the only object on the plate, as it stands in the file: not turned, scaled, "
             "mirrored, cut or moved; a project saved as 3MF keeps its place"

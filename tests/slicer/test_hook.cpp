@@ -467,5 +467,27 @@ TEST_F(Hook, PrintsTheLineToPaste) {
   EXPECT_EQ(read_bytes(gcode()), before_);
 }
 
+TEST_F(Hook, PrintsNoLineThatCannotBePasted) {
+  for (const char* name : {"a\nb.stl", "a;b.stl", "a\rb.stl", "a\x1b[2Jb.stl", "a\tb.stl", "a\x7f.stl"}) {
+    const ProcessResult result =
+        run({AERATE_EXECUTABLE, "hook", "--print-setup", "prusa-slicer", "--model", folder_.path() / name});
+    EXPECT_EQ(result.exit_code, 2) << name;
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(contains(result.err, "rename it")) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+}
+
+TEST_F(Hook, SaysThatFuzzySkinIsRandom) {
+  const auto with_skin = [](std::string text, const std::string& skin) {
+    return text.insert(text.find("; layer_height"), "; fuzzy_skin = " + skin + "\n");
+  };
+  fake_.hands_out("solid", fake_gcode(1000, 0.05));
+  write_gcode(with_skin(fake_gcode(1000), "external"));
+  EXPECT_TRUE(contains(expect_refused(hook(with_model()), 3), "fuzzy skin is random"));
+  write_gcode(with_skin(fake_gcode(1000), "none"));
+  EXPECT_FALSE(contains(expect_refused(hook(with_model()), 3), "fuzzy skin"));
+}
+
 }  // namespace
 }  // namespace aerate::test
