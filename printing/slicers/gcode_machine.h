@@ -47,7 +47,12 @@ class GcodeMachine {
   // Whether it went to another place.
   bool travelled() const;
 
-  // What `run` reported.
+  // Whether places are given from where it stood (G91).
+  bool relative() const { return relative_; }
+
+  // Where it is, and what `run` reported.
+  double x() const { return axes_[0]; }
+  double y() const { return axes_[1]; }
   double z() const { return axes_[2]; }
   double filament() const { return fed_; }
   double feed() const { return feed_; }  // mm per minute; 0 where none was given yet

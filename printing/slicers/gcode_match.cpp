@@ -135,9 +135,38 @@ std::string words_for(std::int64_t layer) {
 
 using CommandsOfLayers = std::map<std::int64_t, std::vector<PrintCommand>>;
 
-std::span<const PrintCommand> commands_in(const CommandsOfLayers& all, std::int64_t layer) {
+// Those of a layer, with the travels that leave the box.
+std::vector<PrintCommand> commands_in(const CommandsOfLayers& all, std::int64_t layer, const PrintBox& box) {
   const auto found = all.find(layer);
-  return found == all.end() ? std::span<const PrintCommand>() : found->second;
+  if (found == all.end()) return {};
+  std::vector<PrintCommand> commands = found->second;
+  std::erase_if(commands, [&](const PrintCommand& command) {
+    return command.leaves_to && box.distance(*command.leaves_to) < kOutOfPrint;
+  });
+  return commands;
+}
+
+std::string line_of(const PrintCommand& command) {
+  return fmt::format("line {} of it, \"{}\"", command.line, on_one_line(command.text));
+}
+
+// Of filament by layer, mm.
+std::optional<std::string> difference_in_feeds(const std::map<std::int64_t, double>& a,
+                                               const std::map<std::int64_t, double>& b, const char* what) {
+  constexpr double kTolerance = 1;  // mm
+  const auto at = [](const auto& feeds, std::int64_t layer) {
+    const auto found = feeds.find(layer);
+    return found == feeds.end() ? 0 : found->second;
+  };
+  for (const auto* feeds : {&a, &b}) {
+    for (const auto& [layer, unused] : *feeds) {
+      const double in_a = at(a, layer), in_b = at(b, layer);
+      if (std::abs(in_a - in_b) > kTolerance)
+        return fmt::format("{:.1f} mm of filament {} instead of {:.1f} {}", in_b, what, in_a,
+                           words_for(layer));
+    }
+  }
+  return std::nullopt;
 }
 
 double relative_difference(double a, double b) {
@@ -149,18 +178,25 @@ double relative_difference(double a, double b) {
 constexpr double kTooLittle = 0.05;        // mm of filament in a feature that nothing is said of
 constexpr double kFeatureFilament = 0.02;  // relative
 constexpr double kSpeedInALayer = 0.3;     // relative
+constexpr double kPerimeterSpeed = 0.1;    // the same
 constexpr double kTimeInAll = 0.03;        // relative, of a feature
 constexpr double kFanSpeed = 13;           // of 255
 constexpr double kAcceleration = 0.02;     // relative
 constexpr double kBegins = 0.1;            // relative, beside one
 
+double speed_tolerance(std::string_view feature) {
+  const bool is_perimeter = feature.starts_with("Perimeter") || feature.starts_with("External perimeter");
+  return is_perimeter ? kPerimeterSpeed : kSpeedInALayer;
+}
+
 // What is different in a feature of a layer that both prints have; nothing if it is the same.
-std::optional<std::string> difference_in_feature(const FeatureTotals& a, const FeatureTotals& b) {
+std::optional<std::string> difference_in_feature(std::string_view feature, const FeatureTotals& a,
+                                                 const FeatureTotals& b) {
   if (std::abs(a.filament - b.filament) > kTooLittle + kFeatureFilament * a.filament)
     return fmt::format("takes {:.2f} mm of filament instead of {:.2f}", b.filament, a.filament);
   if (std::min(a.filament, b.filament) < kTooLittle) return std::nullopt;
   const double speed_a = a.length / a.minutes / 60, speed_b = b.length / b.minutes / 60;
-  if (a.minutes > 0 && b.minutes > 0 && relative_difference(speed_a, speed_b) > kSpeedInALayer)
+  if (a.minutes > 0 && b.minutes > 0 && relative_difference(speed_a, speed_b) > speed_tolerance(feature))
     return fmt::format("is printed at {:.1f} mm/s instead of {:.1f}", speed_b, speed_a);
   if (std::abs(a.fan - b.fan) > kFanSpeed)
     return fmt::format("has the fan at {:.0f} of 255 instead of {:.0f}", b.fan, a.fan);
@@ -198,7 +234,7 @@ std::optional<std::string> difference_in_features(const PrintLog& a, const Print
       if (log == &b && a.features.contains(key)) continue;  // seen already
       const auto& [layer, feature] = key;
       const FeatureTotals &in_a = of(a, key), &in_b = of(b, key);
-      if (const auto difference = difference_in_feature(in_a, in_b))
+      if (const auto difference = difference_in_feature(feature, in_a, in_b))
         return fmt::format("at z = {:.2f} mm the feature \"{}\" {}", static_cast<double>(layer) / 100,
                            feature, *difference);
       FeatureSums& sum = sums[feature];
@@ -275,16 +311,20 @@ std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
 std::optional<std::string> difference_in_commands(const PrintLog& a, const PrintLog& b) {
   for (const CommandsOfLayers* all : {&a.commands, &b.commands}) {
     for (const auto& [layer, unused] : *all) {
-      const std::span<const PrintCommand> in_a = commands_in(a.commands, layer),
-                                          in_b = commands_in(b.commands, layer);
+      // One box for both: a place may be as far from it as the limit.
+      const auto in_a = commands_in(a.commands, layer, a.box), in_b = commands_in(b.commands, layer, a.box);
       const auto [at_a, at_b] = std::mismatch(in_a.begin(), in_a.end(), in_b.begin(), in_b.end());
-      if (at_a != in_a.end())
-        return fmt::format("line {} of it, \"{}\" {}, would be lost", at_a->line, on_one_line(at_a->text),
-                           words_for(layer));
+      if (at_a != in_a.end()) return fmt::format("{} {}, would be lost", line_of(*at_a), words_for(layer));
       if (at_b != in_b.end())
         return fmt::format("\"{}\" {} is not in it", on_one_line(at_b->text), words_for(layer));
     }
   }
+  for (const auto& [acceleration, command] : a.travel_accelerations) {
+    if (!b.travel_accelerations.contains(acceleration)) return line_of(command) + " would be lost";
+  }
+  if (auto difference = difference_in_feeds(a.purged, b.purged, "goes through the standing nozzle"))
+    return difference;
+  if (auto difference = difference_in_feeds(a.kept_back, b.kept_back, "stays retracted")) return difference;
   if (a.tells_progress != b.tells_progress) return "only one of them tells progress (M73)";
   return std::nullopt;
 }

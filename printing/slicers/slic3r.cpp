@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <map>
 #include <utility>
 
 #include "files/output_file.h"
+#include "printing/slicers/gcode_machine.h"
 #include "printing/slicers/ini_settings.h"
 #include "printing/slicers/slicers.h"
 #include "printing/slicers/text_file.h"
@@ -63,9 +65,52 @@ std::optional<double> grams_of(std::string_view text) {
   return number_of_unit(text, "g");
 }
 
-// The last of its settings.
+// Of an extruder, mm: what has gone in, and the most of it, since it may end retracted.
+struct Feed {
+  double sum = 0, most = 0;
+};
+
+// Of all extruders, mm: by the moves, and what Slic3r says.
+struct Filament {
+  double moved = 0, said = 0;
+};
+
+Filament filament_in(std::string_view gcode) {
+  constexpr std::string_view kSaid = "; filament used = ";
+  Filament filament;
+  std::map<int, Feed> extruders;
+  Feed* feed = &extruders[0];
+  GcodeMachine machine;
+  for_each_line(gcode, [&](std::string_view line) {
+    machine.run(line);
+    if (machine.moved()) {
+      feed->sum += machine.filament();
+      feed->most = std::max(feed->most, feed->sum);
+    } else if (line.starts_with('T')) {
+      if (const auto tool = command_word(command_in(line))) feed = &extruders[tool->code];
+    } else if (line.starts_with(kSaid)) {
+      filament.said += millimetres_of(line.substr(kSaid.size())).value_or(0);
+    }
+    return true;
+  });
+  for (const auto& [tool, each] : extruders) filament.moved += each.most;
+  return filament;
+}
+
+// While the disk is full lines get lost, and when it is no longer the rest is written. G-code of the user's own
+// may move more than Slic3r says, and by G91 and G90 change what E means.
+bool has_hole(std::string_view gcode) {
+  constexpr double kMissing = 0.01;  // relative; measured: none but for the last decimal
+  constexpr double kRounding = 0.1;  // mm
+  if (gcode.find("\nG91") != std::string_view::npos) return false;
+  const Filament filament = filament_in(gcode);
+  return filament.moved < filament.said * (1 - kMissing) - kRounding;
+}
+
+// The last of its settings is there, and what was to be extruded before.
 bool is_complete(std::string_view gcode) {
-  return gcode.find("\n; top_solid_layers = ") != std::string_view::npos && ends_with_setting(gcode);
+  return gcode.find("\n; top_solid_layers = ") != std::string_view::npos && ends_with_setting(gcode) &&
+         !has_hole(gcode);
 }
 
 ChildCommand command_for(const fs::path& program, const SliceJob& job) {

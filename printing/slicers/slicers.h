@@ -76,7 +76,7 @@ struct SlicerProfile {
   std::vector<std::string_view> marks;
   std::vector<FigureLine> figures;
   bool (*begins_layer)(std::string_view comment) = nullptr;
-  // Whether the end of a G-code is there: a slicer may not say that its disk was full.
+  // Whether the end of a G-code is there, and what it should extrude if it says so: a slicer may not say that its disk was full.
   bool (*is_complete)(std::string_view gcode) = nullptr;
   std::vector<std::string> calls_hook;  // of the family, those that call post-processing scripts
   bool repeats_gcode = false;           // a G-code holds the settings to slice the model once more

@@ -28,6 +28,16 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
+// The window and the settings of a slicer end a line at a semicolon, and at what ends any line.
+void require_pastable(const std::string& path) {
+  const auto breaks_line = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == ';'; };
+  if (!std::ranges::any_of(path, breaks_line)) return;
+  throw UsageError(path +
+                       ": a name with a semicolon or a control character cannot stand in the slicer's "
+                       "settings",
+                   "rename it or its folder");
+}
+
 std::string own_path() {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -52,7 +62,9 @@ struct HookCommand {
   }
 
   std::string setup_line() const {
-    std::string line = quoted(own_path()) + " hook";
+    const std::string program = own_path();
+    require_pastable(program);
+    std::string line = quoted(program) + " hook";
     const auto calls = [&](const SlicerProfile& slicer) {
       return std::ranges::count(slicer.calls_hook, setup) > 0;
     };
@@ -60,6 +72,7 @@ struct HookCommand {
     if (!std::ranges::find_if(slicers(), calls)->repeats_gcode) return line;
     const std::string file = model.path.empty() ? std::string("/path/to/model.stl")
                                                 : std::filesystem::absolute(model.path).string();
+    require_pastable(file);
     return line + " --model " + quoted(file);
   }
 

@@ -2,8 +2,11 @@
 
 #include <cstdlib>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/listed.h"
@@ -24,6 +27,14 @@ constexpr const char* kHollowFirst =
     "what was set in the slicer's window for objects, layers or faces is not in a mesh: hollow the model "
     "first "
     "('aerate hollow') and set it there";
+
+constexpr const char* kHollowInsteadOfFuzzy =
+    "switch fuzzy skin off, or hollow the model first ('aerate hollow')";
+
+constexpr const char* kNoFormHoldsAll =
+    "inside a hollow there may be supports, layers and tools that the solid print has not: try --as "
+    "modifiers "
+    "or voids, or other settings of the slicer";
 
 // The block of comments begins and ends with these.
 constexpr std::string_view kBegin = "; aerate = begin\n", kEnd = "; aerate = end\n";
@@ -66,10 +77,14 @@ void require_same_place(const SlicedForm& form, const std::vector<ExtrusionMove>
 
 // What the G-code holds that is compared with what the model gives.
 struct Original {
-  explicit Original(std::string_view gcode) : moves(extrusion_moves(gcode)), log(log_of_print(gcode)) {}
+  explicit Original(std::string_view gcode)
+      : moves(extrusion_moves(gcode)),
+        log(log_of_print(gcode)),
+        has_fuzzy_skin(setting_in(gcode, "fuzzy_skin").value_or("none") != "none") {}
 
   std::vector<ExtrusionMove> moves;
   PrintLog log;
+  bool has_fuzzy_skin;
 };
 
 void require_match(const Original& original, const SlicedForm& solid, const Slicer& slicer,
@@ -79,6 +94,7 @@ void require_match(const Original& original, const SlicedForm& solid, const Slic
   const bool is_elsewhere = difference.has_value();
   if (!difference) difference = difference_of(original.log, log_of_print(gcode));
   if (!difference) return;
+  if (original.has_fuzzy_skin) *difference += ": fuzzy skin is random, so it cannot be compared";
   const std::string slicer_name = origin_of(gcode).name;
   throw InputError(
       fmt::format("{}: sliced with the settings of {} it does not give the same G-code ({})",
@@ -86,6 +102,7 @@ void require_match(const Original& original, const SlicedForm& solid, const Slic
       slicer_name != origin.name
           ? fmt::format("the G-code is by {}, and {} is {}: give the program that made it as --slicer-path",
                         origin.name, slicer.program.string(), slicer_name)
+      : original.has_fuzzy_skin ? kHollowInsteadOfFuzzy
       : is_elsewhere
           ? "it has to be the only object on the plate, as it stands in the file: not turned, scaled, "
             "mirrored, cut or moved; a project saved as 3MF keeps its place"
@@ -114,13 +131,12 @@ std::string object_name_in(const std::string& gcode, const ProjectFacts& facts, 
   return is_project(model) ? "" : model.filename().string();
 }
 
-// The hollowed print does all that the original does beside moving.
-void require_commands(const SlicedForm& form, const Original& original) {
+// Why a hollowed print cannot take the original's place, if it does not do all that this does beside moving.
+std::optional<std::string> loss_in(const SlicedForm& form, const Original& original) {
   const auto difference = difference_in_commands(original.log, log_of_print(read_text(form.gcode)));
-  if (difference)
-    throw FailureError(fmt::format("the print with {} does not do all that the G-code does ({})",
-                                   name_of(form.form), *difference),
-                       kHollowFirst);
+  if (!difference) return std::nullopt;
+  return fmt::format("the print with {} does not do all that the G-code does ({})", name_of(form.form),
+                     *difference);
 }
 
 // Without them the slicer would take its defaults, or stumble.
@@ -154,6 +170,10 @@ std::string comments_for(const HookReport& report) {
   return text + std::string(kEnd);
 }
 
+std::string joined(const std::vector<std::string>& remarks) {
+  return fmt::format("{}", fmt::join(remarks, "; "));
+}
+
 // Solid, then hollowed as far as that is possible.
 void slice_forms(const std::string& original, const HookOptions& options, const fs::path& scratch,
                  HookReport& report, JobLog& log) {
@@ -174,19 +194,29 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
   log.stage("compare");
   require_match(read, solid, slicer, report.origin, options);
   report.forms.front().slicer_seconds = solid.slicer_seconds;
+  std::vector<std::string> losses;
   try {
     for (SlicedForm& form : slice_hollowed(hollowed, job, log)) {
       require_same_place(form, read.moves);
-      require_commands(form, read);
-      report.forms.push_back(std::move(form));
+      if (auto loss = loss_in(form, read)) {
+        losses.push_back(std::move(*loss));
+      } else {
+        report.forms.push_back(std::move(form));
+      }
     }
   } catch (const NothingToRemoveError& error) {
     // Not a failure of the print: the script may stand in the settings for models of any size.
     report.remark = error.what();
     return;
   }
+  report.remark = joined(losses);
+  // What another form would lose is no reason to refuse one that loses nothing.
+  if (report.forms.size() == 1) throw FailureError(report.remark, kNoFormHoldsAll);
+  for (const std::string& loss : losses) log.notice(loss);
   report.chosen = choose_form(report.forms, request.form);
-  if (report.chosen == 0) report.remark = "no hollowed form takes less filament";
+  if (report.chosen > 0) return;
+  losses.insert(losses.begin(), "no hollowed form takes less filament");
+  report.remark = joined(losses);
 }
 
 std::string new_content(const std::string& original, const HookReport& report) {

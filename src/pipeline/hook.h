@@ -17,7 +17,7 @@ struct HookOptions {
 struct HookReport : FormsReport {
   std::filesystem::path gcode;
   GcodeOrigin origin;
-  std::string remark;  // why the moves stayed as they were, if they did
+  std::string remark;  // why the moves stayed as they were, or a form was left out
 
   const char* result() const { return chosen > 0 ? name_of(best().form) : "unchanged"; }
 };

@@ -175,8 +175,37 @@ TEST_F(Load, SizeOfBinaryStlDecidesWhatItHoldsAndSaysSo) {
     EXPECT_TRUE(contains(model.notices[0], "holds 12"));
   }
   EXPECT_TRUE(load("count.stl", to_binary_stl(odd_box())).notices.empty());
-  std::string bytes = to_binary_stl(odd_box()) + "a comment";
-  EXPECT_TRUE(contains(input_error("more.stl", bytes), "wrong triangle count"));
+}
+
+TEST_F(Load, BytesAfterTheTrianglesOfABinaryStlAreSaid) {
+  const std::string bytes = to_binary_stl(odd_box()) + "a comment";
+  const LoadedModel model = load("more.stl", bytes);
+  expect_same_corners(model.mesh, odd_box());
+  ASSERT_EQ(model.notices.size(), 1u);
+  EXPECT_TRUE(contains(model.notices[0], "9 bytes follow"));
+}
+
+// A header that promises less than there is leaves the rest out, and that is said.
+TEST_F(Load, FacesBeyondTheHeadersNumberAreSaid) {
+  const std::string off = "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const LoadedModel of_off = load("more.off", off);
+  EXPECT_EQ(of_off.mesh.triangles.size(), 2u);
+  ASSERT_EQ(of_off.notices.size(), 1u);
+  EXPECT_TRUE(contains(of_off.notices[0], "line 9"));
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n";
+  EXPECT_TRUE(load("as_promised.ply", ply + "\n").notices.empty());
+  EXPECT_EQ(load("more.ply", ply + "3 0 1 3\n").notices.size(), 1u);
+}
+
+// The fourth number of a vertex is a curve's weight.
+TEST_F(Load, WeightsOfObjVerticesDoNotMoveThem) {
+  const LoadedModel model = load("weights.obj", "v 2 0 0 2\nv 0 2 0 0.5\nv 0 0 2 1\nf 1 2 3\n");
+  ASSERT_EQ(model.mesh.positions.size(), 3u);
+  EXPECT_EQ(model.mesh.positions[0], (Vec3f{2, 0, 0}));
+  EXPECT_EQ(model.mesh.positions[1], (Vec3f{0, 2, 0}));
 }
 
 TEST_F(Load, StlWithoutTriangles) {

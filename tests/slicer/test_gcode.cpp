@@ -184,7 +184,8 @@ TEST(Gcode, SettingsAreHandedOnWithoutPrograms) {
 
 TEST(Gcode, TheEndOfAPrintIsKnown) {
   const std::string prusa = "G1 X1\n; prusaslicer_config = begin\n; wipe = 0\n; prusaslicer_config = end\n";
-  const std::string slic3r_end = "G1 X1\n; filament used = 1mm\n; thin_walls = 1\n; top_solid_layers = 3\n";
+  const std::string slic3r_end =
+      "G1 X1 E1\n; filament used = 1mm\n; thin_walls = 1\n; top_solid_layers = 3\n";
   const std::string cura = "G1 X1\nM104 S0\n;End of Gcode\n";
   EXPECT_TRUE(prusa_slicer().is_complete(prusa));
   EXPECT_TRUE(slic3r().is_complete(slic3r_end));
@@ -196,6 +197,27 @@ TEST(Gcode, TheEndOfAPrintIsKnown) {
     EXPECT_FALSE(slic3r().is_complete(slic3r_end.substr(0, size))) << size;
   for (std::size_t size = 0; size + 2 < cura.size(); ++size)
     EXPECT_FALSE(cura_engine().is_complete(cura.substr(0, size))) << size;
+}
+
+TEST(Gcode, AHoleInAPrintOfSlic3rIsKnown) {
+  std::string start = "M83\n",
+              end = "; filament used = 200.0mm (0.5cm3)\n; thin_walls = 1\n; top_solid_layers = 3\n";
+  const auto print = [&](int moves) {
+    std::string text = start;
+    for (int i = 0; i < moves; ++i) text += "G1 X" + std::to_string(i % 2) + " E1\nG1 E-1\nG1 E1\n";
+    return text + "G1 E-2\n" + end;
+  };
+  EXPECT_TRUE(slic3r().is_complete(print(200)));
+  EXPECT_FALSE(slic3r().is_complete(print(195)));
+  // Filament of the user's own G-code is not in the figure; that of all extruders is.
+  EXPECT_TRUE(slic3r().is_complete(print(230)));
+  end.insert(0, "; filament used = 50.0mm (0.1cm3)\n");
+  EXPECT_FALSE(slic3r().is_complete(print(200)));
+  EXPECT_TRUE(slic3r().is_complete(print(250)));
+  // An extruder that is not in use stays retracted.
+  start += "T1\nG1 X3 E50\nG1 E-10\nT0\n";
+  EXPECT_TRUE(slic3r().is_complete(print(200)));
+  EXPECT_FALSE(slic3r().is_complete(print(195)));
 }
 
 TEST(Gcode, ThumbnailsOfTheOriginalAreKept) {

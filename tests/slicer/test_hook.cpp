@@ -194,12 +194,53 @@ TEST_F(Hook, KeepsTheFileIfTheModelDoesNotGiveAllItsCommands) {
   EXPECT_TRUE(contains(message, "hollow the model first"));
 }
 
-TEST_F(Hook, KeepsTheFileIfTheHollowedPrintDoesLess) {
+TEST_F(Hook, KeepsTheFileIfEveryHollowedPrintDoesLess) {
   std::string text = fake_gcode(1000);
   text.insert(text.find("; filament used"), "M104 S230\nG1 X20 Y10 E1\n");
   write_gcode(text);
   fake_.hands_out("solid", text);
-  EXPECT_TRUE(contains(expect_refused(hook(with_model()), 1), "\"M104 S230\""));
+  const std::string message = expect_refused(hook(with_model()), 1);
+  EXPECT_TRUE(contains(message, "\"M104 S230\""));
+  EXPECT_TRUE(contains(message, "the print with voids") && contains(message, "the print with modifiers"));
+  // Nothing was set in the slicer's window: the solid print has it all.
+  EXPECT_FALSE(contains(message, "slicer's window"));
+}
+
+TEST_F(Hook, LeavesOutAFormThatDoesLessAndTakesAnother) {
+  // As supports inside a hollow bring labels that the original has not.
+  std::string labelled = fake_gcode(700);
+  labelled.insert(labelled.find("; filament used"), "; printing object a id:0 copy 0\nG1 X20 Y10 E1\n");
+  fake_.hands_out("voids", labelled);
+  const ProcessResult result = hook(with_model());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string after = read_bytes(gcode());
+  EXPECT_TRUE(contains(after, "; aerate_result = modifiers\n"));
+  EXPECT_TRUE(contains(after,
+                       "; aerate_remark = the print with voids does not do all that the G-code does "
+                       "(\"; printing object a id:0 copy 0\""));
+  expect_nothing_left();
+}
+
+TEST_F(Hook, SaysWhichFormWasLeftOutIfTheOtherSavesNothing) {
+  std::string paused = fake_gcode(700);
+  paused.insert(paused.find("; filament used"), "M601\nG1 X20 Y10 E1\n");
+  fake_.hands_out("voids", paused);
+  fake_.hands_out("modifiers", fake_gcode(1000));
+  const ProcessResult result = hook(with_model());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string after = read_bytes(gcode());
+  EXPECT_TRUE(contains(after, "; aerate_result = unchanged\n"));
+  EXPECT_TRUE(
+      contains(after, "; aerate_remark = no hollowed form takes less filament; the print with voids"));
+}
+
+TEST_F(Hook, RefusesTheFormAskedForIfItDoesLess) {
+  std::string paused = fake_gcode(700);
+  paused.insert(paused.find("; filament used"), "M601\nG1 X20 Y10 E1\n");
+  fake_.hands_out("voids", paused);
+  auto options = with_model();
+  options.insert(options.end(), {"--as", "voids"});
+  EXPECT_TRUE(contains(expect_refused(hook(options), 1), "\"M601\""));
 }
 
 TEST_F(Hook, NoCharacterOfAModelsNameEndsAComment) {
@@ -424,6 +465,28 @@ TEST_F(Hook, PrintsTheLineToPaste) {
   EXPECT_EQ(shell.exit_code, 3);
   EXPECT_TRUE(contains(shell.err, "it's a block.stl"));
   EXPECT_EQ(read_bytes(gcode()), before_);
+}
+
+TEST_F(Hook, PrintsNoLineThatCannotBePasted) {
+  for (const char* name : {"a\nb.stl", "a;b.stl", "a\rb.stl", "a\x1b[2Jb.stl", "a\tb.stl", "a\x7f.stl"}) {
+    const ProcessResult result =
+        run({AERATE_EXECUTABLE, "hook", "--print-setup", "prusa-slicer", "--model", folder_.path() / name});
+    EXPECT_EQ(result.exit_code, 2) << name;
+    EXPECT_EQ(result.out, "");
+    EXPECT_TRUE(contains(result.err, "rename it")) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+}
+
+TEST_F(Hook, SaysThatFuzzySkinIsRandom) {
+  const auto with_skin = [](std::string text, const std::string& skin) {
+    return text.insert(text.find("; layer_height"), "; fuzzy_skin = " + skin + "\n");
+  };
+  fake_.hands_out("solid", fake_gcode(1000, 0.05));
+  write_gcode(with_skin(fake_gcode(1000), "external"));
+  EXPECT_TRUE(contains(expect_refused(hook(with_model()), 3), "fuzzy skin is random"));
+  write_gcode(with_skin(fake_gcode(1000), "none"));
+  EXPECT_FALSE(contains(expect_refused(hook(with_model()), 3), "fuzzy skin"));
 }
 
 }  // namespace
