@@ -131,11 +131,12 @@ double weld_tolerance(const Inspection& inspection, const SurfacePolicy& policy)
                         hole_limit(model.inspection, policy), at_least(largest)));
 }
 
-// Replaces the mesh by a repaired one and passes on what was done.
+// Replaces the mesh by a repaired one and passes on what was done. Without a notice nothing was, and what is known
+// of the mesh still holds.
 void adopt(PreparedModel& model, Repaired repaired, Monitor& monitor) {
   for (const std::string& notice : repaired.notices) monitor.notice(notice);
   model.mesh = std::move(repaired.mesh);
-  model.inspection = inspect(model.mesh);
+  if (!repaired.notices.empty()) model.inspection = inspect(model.mesh);
 }
 
 void turn_outward(PreparedModel& model, Monitor& monitor) {
@@ -148,6 +149,7 @@ void turn_outward(PreparedModel& model, Monitor& monitor) {
 void unite(PreparedModel& model, Monitor& monitor) {
   constexpr double kSameVolume = 0.01;
   Repaired united = unite_doubles(model.mesh);
+  if (united.notices.empty()) return;
   const double before = model.inspection.filled_volume, after = inspect(united.mesh).filled_volume;
   if (model.inspection.closed() && std::abs(after - before) > kSameVolume * std::abs(before)) return;
   adopt(model, std::move(united), monitor);

@@ -1,7 +1,6 @@
 #include "pipeline/slice_model.h"
 
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "core/error.h"
@@ -14,14 +13,6 @@
 
 namespace aerate {
 namespace {
-
-void require_other_than_settings(const SliceModelOptions& options) {
-  for (const std::filesystem::path& file : options.settings.files) {
-    std::error_code none;
-    if (!std::filesystem::equivalent(file, options.output, none)) continue;
-    throw UsageError(options.output.string() + ": the output is a file of settings", "give another name");
-  }
-}
 
 // A slip such as `-o part.stl` would put G-code where a model is looked for.
 void require_no_models_name(const std::filesystem::path& output) {
@@ -80,7 +71,6 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   report.output = options.output;
   report.slicer = find_slicer(*options.slicer, request.slicer_path);
   require_settings(options.settings, *options.slicer);
-  require_other_than_settings(options);
   const std::vector<PrintForm> hollowed = forms_to_try(request.form, *options.slicer);
 
   JobLog log(monitor);
