@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/listed.h"
 #include "kernels/constants.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
@@ -299,12 +300,11 @@ std::vector<std::string> words_for(std::size_t moved, double farthest, const Fil
   std::vector<std::string> notices;
   if (moved > 0)
     notices.push_back(fmt::format("cracks are closed: {} moved, by {:.3g} mm at most",
-                                  moved == 1 ? "1 vertex is" : fmt::format("{} vertices are", moved),
-                                  farthest));
+                                  counted(moved, "vertex is", "vertices are"), farthest));
   if (slits.triangles > 0)
     notices.push_back(fmt::format(
         "cracks along edges that meet others in the middle are closed: by {}, {:.3g} mm wide at most",
-        slits.triangles == 1 ? "1 triangle" : fmt::format("{} triangles", slits.triangles), slits.widest));
+        counted(slits.triangles, "triangle", "triangles"), slits.widest));
   return notices;
 }
 

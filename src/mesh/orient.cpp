@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/listed.h"
 #include "kernels/constants.h"
 #include "kernels/winding.h"
 #include "mesh/repair.h"
@@ -165,11 +166,10 @@ Repaired orient_consistently(Mesh mesh) {
   }
   Repaired repaired{std::move(mesh), {}};
   if (turned_count > 0) {
-    repaired.notices.push_back(
-        fmt::format("{} of {} turned to agree with {}",
-                    turned_count == 1 ? "1 triangle" : fmt::format("{} triangles", turned_count),
-                    turned_shells == 1 ? "1 shell" : fmt::format("{} shells", turned_shells),
-                    turned_count == 1 ? "its neighbours" : "their neighbours"));
+    repaired.notices.push_back(fmt::format("{} of {} turned to agree with {}",
+                                           counted(turned_count, "triangle", "triangles"),
+                                           counted(turned_shells, "shell", "shells"),
+                                           turned_count == 1 ? "its neighbours" : "their neighbours"));
   }
   if (left > 0) {
     repaired.notices.push_back(fmt::format(

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "core/listed.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
 
@@ -15,8 +16,7 @@ Repaired without_repeated_vertices(Mesh mesh) {
   if (left_out == 0 || kept.empty()) return {std::move(mesh), {}};
   return {submesh(mesh, kept),
           {fmt::format("{} with two equal corners {} left out; nothing is between them",
-                       left_out == 1 ? "1 triangle" : fmt::format("{} triangles", left_out),
-                       left_out == 1 ? "is" : "are")}};
+                       counted(left_out, "triangle", "triangles"), left_out == 1 ? "is" : "are")}};
 }
 
 }  // namespace aerate

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/listed.h"
 #include "kernels/constants.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
@@ -88,10 +89,6 @@ std::vector<std::uint32_t> closed_bodies(const Mesh& mesh, const std::vector<std
   return closed;
 }
 
-std::string count_of(std::size_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 }  // namespace
 
 Repaired unite_doubles(Mesh mesh) {
@@ -100,7 +97,7 @@ Repaired unite_doubles(Mesh mesh) {
   const std::vector<std::uint32_t> bodies = closed_bodies(mesh, repeated);
   if (!bodies.empty()) {
     notices.push_back(fmt::format("bodies that lie twice in one place are taken once: {} left out",
-                                  count_of(bodies.size(), "triangle is", "triangles are")));
+                                  counted(bodies.size(), "triangle is", "triangles are")));
     mesh = without(mesh, bodies);
     repeated = repeated_triangles(mesh);
   }
@@ -110,7 +107,7 @@ Repaired unite_doubles(Mesh mesh) {
   if (count_unbalanced_edges(single) >= count_unbalanced_edges(mesh))
     return {std::move(mesh), std::move(notices)};
   notices.push_back(
-      fmt::format("{} left out", count_of(repeated.size(), "doubled triangle is", "doubled triangles are")));
+      fmt::format("{} left out", counted(repeated.size(), "doubled triangle is", "doubled triangles are")));
   return {std::move(single), std::move(notices)};
 }
 

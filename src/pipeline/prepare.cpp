@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "mesh/lost_surface.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
@@ -57,10 +58,6 @@ std::string name_of(const PreparedModel& model) {
   return model.input.path.filename().string();
 }
 
-std::string plural(std::size_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 double diagonal_of(const Box3f& box) {
   return length(to_double(box.upper) - to_double(box.lower));
 }
@@ -75,8 +72,8 @@ std::string holes_in_words(const Inspection& inspection) {
   const BoundaryLoop& largest = inspection.boundary_loops.front();
   const std::size_t holes = inspection.boundary_loops.size();
   return fmt::format("{} form {}{} near ({:.1f}, {:.1f}, {:.1f}) mm, {:.3g} mm across",
-                     plural(inspection.open_edges, "boundary edge", "boundary edges"),
-                     plural(holes, "hole", "holes"), holes == 1 ? "" : ", the largest", largest.centre.x,
+                     counted(inspection.open_edges, "boundary edge", "boundary edges"),
+                     counted(holes, "hole", "holes"), holes == 1 ? "" : ", the largest", largest.centre.x,
                      largest.centre.y, largest.centre.z, largest.diameter);
 }
 
@@ -100,7 +97,7 @@ void require_solid(const PreparedModel& model) {
   if (inspection.misoriented_edges > 0) {
     throw MeshError(fmt::format("{}: the triangles on either side of {} face opposite ways, so that the "
                                 "inside is not defined",
-                                name_of(model), plural(inspection.misoriented_edges, "edge", "edges")),
+                                name_of(model), counted(inspection.misoriented_edges, "edge", "edges")),
                     "make the normals consistent in a mesh editor");
   }
   const Vec3d size = to_double(inspection.box.upper) - to_double(inspection.box.lower);
@@ -165,7 +162,7 @@ void require_no_cracks(const PreparedModel& model, const Mesh& closed) {
       fmt::format("{}: the surface is cracked: {} of a rim near ({:.1f}, {:.1f}, {:.1f}) mm, {:.3g} mm "
                   "across, lie on "
                   "each other but for {:.3g} mm",
-                  name_of(model), plural(crack.rim.edge_count, "edge", "edges"), crack.rim.centre.x,
+                  name_of(model), counted(crack.rim.edge_count, "edge", "edges"), crack.rim.centre.x,
                   crack.rim.centre.y, crack.rim.centre.z, crack.rim.diameter, crack.width),
       fmt::format("join what is so near with --weld {}", at_least(crack.weld)));
 }
