@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "files/text_scan.h"
 #include "printing/slicers/gcode.h"
 #include "printing/slicers/text_file.h"
 
@@ -20,8 +21,7 @@ bool is_key(std::string_view text) {
 // A program in it would be run by the slicer, however the key is written.
 bool names_programs(std::string_view key) {
   std::string lower(key);
-  std::ranges::transform(lower, lower.begin(),
-                         [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
+  std::ranges::transform(lower, lower.begin(), to_lower_ascii);
   return lower == kPostProcess;
 }
 
@@ -30,15 +30,10 @@ bool marks_block(const SettingLine& setting) {
   return setting.key.ends_with("_config") && (setting.value == "begin" || setting.value == "end");
 }
 
-std::string_view without_mark(std::string_view text) {
-  constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
-  return text.starts_with(kUtf8Mark) ? text.substr(kUtf8Mark.size()) : text;
-}
-
 }  // namespace
 
 std::string plain_settings(std::string_view text) {
-  text = without_mark(text);
+  text.remove_prefix(start_of_text(text));
   const bool in_comments = origin_of(text).slicer != nullptr;  // G-code, or a project's
   std::string plain;
   for_each_line(text, [&](std::string_view line) {
@@ -55,7 +50,7 @@ std::string plain_settings(std::string_view text) {
 
 void require_no_bundle(const std::filesystem::path& file) {
   const std::string text = read_text(file);
-  for_each_line(without_mark(text), [&](std::string_view line) {
+  for_each_line(std::string_view(text).substr(start_of_text(text)), [&](std::string_view line) {
     line = without_blanks(line);
     if (line.starts_with('[') && line.ends_with(']')) {
       throw InputError(

@@ -26,51 +26,48 @@ ChildCommand command_for(const std::filesystem::path& program, const SliceJob& j
 }
 
 // One mesh; parts are ranges of its triangles. Versions before 2.3 look for "modifier" instead of a type.
-constexpr const char* kTemplate = R"(<?xml version="1.0"?>
-<config>
- <object id="1" instances_count="1">
-  <metadata type="object" key="name" value="{7}" />
-  <volume firstid="{1}" lastid="{2}">
+std::string volume_of(const ObjectPart& part, const std::string& name) {
+  constexpr const char* kBody = R"(  <volume firstid="{1}" lastid="{2}">
    <metadata type="volume" key="name" value="{0}" />
    <metadata type="volume" key="volume_type" value="ModelPart" />
   </volume>
-  <volume firstid="{4}" lastid="{5}">
-   <metadata type="volume" key="name" value="{3}" />
+)";
+  constexpr const char* kModifier = R"(  <volume firstid="{1}" lastid="{2}">
+   <metadata type="volume" key="name" value="{0}" />
    <metadata type="volume" key="volume_type" value="ParameterModifier" />
    <metadata type="volume" key="modifier" value="1" />
-   <metadata type="volume" key="fill_density" value="{6}" />
+   <metadata type="volume" key="fill_density" value="{3}" />
   </volume>
- </object>
+)";
+  const std::size_t last = part.end() - 1;
+  return part.is_modifier ? fmt::format(kModifier, name, part.first_triangle, last, part.infill)
+                          : fmt::format(kBody, name, part.first_triangle, last);
+}
+
+// An object of this name, as XML has it.
+ThreeMfExtras with_part_list(const std::string& object_name, const std::string& shown,
+                             const std::string& volumes) {
+  constexpr const char* kList = R"(<?xml version="1.0"?>
+<config>
+ <object id="1" instances_count="1">
+  <metadata type="object" key="name" value="{}" />
+{} </object>
 </config>
 )";
-
-ThreeMfExtras extras_for(const ObjectPart& model, const ObjectPart& voids, const std::string& object_name) {
   ThreeMfExtras extras;
   extras.object_name = object_name;
-  const std::string object = xml_value(object_name.empty() ? model.name : object_name);
-  extras.entries = {
-      {kPartList, fmt::format(kTemplate, model.name, model.first_triangle, model.end() - 1, voids.name,
-                              voids.first_triangle, voids.end() - 1, voids.infill, object)}};
+  extras.entries = {{kPartList, fmt::format(kList, shown, volumes)}};
   return extras;
 }
 
+ThreeMfExtras extras_for(const ObjectPart& model, const ObjectPart& voids, const std::string& object_name) {
+  return with_part_list(object_name, xml_value(object_name.empty() ? model.name : object_name),
+                        volume_of(model, model.name) + volume_of(voids, voids.name));
+}
+
 ThreeMfExtras named(const ObjectPart& model, const std::string& object_name) {
-  constexpr const char* kOnePart = R"(<?xml version="1.0"?>
-<config>
- <object id="1" instances_count="1">
-  <metadata type="object" key="name" value="{0}" />
-  <volume firstid="{1}" lastid="{2}">
-   <metadata type="volume" key="name" value="{0}" />
-   <metadata type="volume" key="volume_type" value="ModelPart" />
-  </volume>
- </object>
-</config>
-)";
-  ThreeMfExtras extras;
-  extras.object_name = object_name;
-  extras.entries = {
-      {kPartList, fmt::format(kOnePart, xml_value(object_name), model.first_triangle, model.end() - 1)}};
-  return extras;
+  const std::string shown = xml_value(object_name);
+  return with_part_list(object_name, shown, volume_of(model, shown));
 }
 
 std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
