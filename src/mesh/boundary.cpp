@@ -121,7 +121,7 @@ BoundaryLoop describe_loop(const Mesh& mesh, const BoundaryChain& chain) {
     sum = sum + to_double(p);
   }
   loop.centre = sum * (1.0 / static_cast<double>(chain.vertices.size()));
-  loop.diameter = length(to_double(box.upper) - to_double(box.lower));
+  loop.diameter = diagonal_of(box);
   return loop;
 }
 

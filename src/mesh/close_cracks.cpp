@@ -370,8 +370,7 @@ std::optional<Crack> find_crack(const Mesh& mesh) {
   const EdgeUses uses(mesh);
   const std::vector<OpenEdge> open = open_edges(mesh, uses);
   const std::vector<BoundaryChain> rims = chain_boundary(mesh, uses);
-  const Box3f box = bounding_box(mesh);
-  double size = kLargestShare * length(to_double(box.upper) - to_double(box.lower));
+  double size = kLargestShare * diagonal_of(bounding_box(mesh));
   for (int step = 0; step < kSteps && !open.empty(); ++step, size /= 4) {
     Closed closed = close_within(mesh, open, size / kSizes);
     const std::vector<BoundaryChain> cracks = closed_rims(mesh, rims, size, closed);

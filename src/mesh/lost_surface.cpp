@@ -1,9 +1,10 @@
 #include "mesh/lost_surface.h"
 
-#include <cmath>
 #include <cstddef>
 #include <tbb/parallel_for.h>
 #include <vector>
+
+#include "mesh/r2_sequence.h"
 
 namespace aerate {
 namespace {
@@ -18,7 +19,7 @@ struct Sample {
   double area;  // that it stands for
 };
 
-// Points of the R2 sequence (see overlap.cpp), folded into the triangle.
+// Points of a square, folded into the triangle.
 void add_samples(const kernels::Facet& facet, double area_each, double depth, std::vector<Sample>& samples) {
   const Vec3d a = to_double(facet.a);
   const Vec3d ab = to_double(facet.b) - a, ac = to_double(facet.c) - a;
@@ -27,8 +28,7 @@ void add_samples(const kernels::Facet& facet, double area_each, double depth, st
   if (!(twice > 0)) return;
   const auto count = 1 + static_cast<std::size_t>(twice / 2 / area_each);
   for (std::size_t i = 0; i < count; ++i) {
-    double u = std::fmod(1.0 / 3 + 0.7548776662466927 * static_cast<double>(i), 1.0);
-    double v = std::fmod(1.0 / 3 + 0.5698402909980532 * static_cast<double>(i), 1.0);
+    auto [u, v] = r2_point(i, 1.0 / 3);
     if (u + v > 1) {
       u = 1 - u;
       v = 1 - v;

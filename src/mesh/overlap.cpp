@@ -8,6 +8,7 @@
 
 #include "kernels/constants.h"
 #include "kernels/winding.h"
+#include "mesh/r2_sequence.h"
 
 namespace aerate {
 namespace {
@@ -92,21 +93,13 @@ Overlap measure_overlap(const Mesh& mesh, const ShellLabels& labels) {
   const kernels::WindingView& winding = host.view();
   const Vec3d size = winding.box.upper - winding.box.lower;
 
-  // The R2 sequence: steps of 1/g and 1/g^2 with g the plastic number, g^3 = g + 1. It fills a square evenly
-  // in any direction, and never along the faces of a part, as a square raster would.
-  // (M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.)
-  constexpr double kStepX = 0.7548776662466927;
-  constexpr double kStepY = 0.5698402909980532;
-  const auto fraction = [](double value) { return value - std::floor(value); };
-
   std::vector<LineSums> sums(kBlocks);
   std::vector<std::uint8_t> overlapping(labels.count, 0);
   tbb::parallel_for(std::size_t{0}, kBlocks, [&](std::size_t block) {
     LineMeasure measure(winding, labels, kRoundingShare * length(size), overlapping);
     for (std::size_t i = block * kLinesPerBlock; i < (block + 1) * kLinesPerBlock; ++i) {
-      const double x = winding.box.lower.x + size.x * fraction(0.5 + kStepX * static_cast<double>(i));
-      const double y = winding.box.lower.y + size.y * fraction(0.5 + kStepY * static_cast<double>(i));
-      measure.add_line(x, y, sums[block]);
+      const auto [x, y] = r2_point(i, 0.5);
+      measure.add_line(winding.box.lower.x + size.x * x, winding.box.lower.y + size.y * y, sums[block]);
     }
   });
 

@@ -22,6 +22,17 @@ inline bool has_repeated_vertex(const Triangle& t) {
 // Whether its corners are collinear, exactly.
 bool has_no_area(const Mesh& mesh, const Triangle& triangle);
 
+inline double diagonal_of(const Box3f& box) {
+  return length(to_double(box.upper) - to_double(box.lower));
+}
+
+// Whether a closed surface with this volume in its box is flat: what it encloses is rounding, not a solid.
+inline bool is_flat(double volume, const Box3f& box) {
+  constexpr double kLeastShare = 1e-9;
+  const Vec3d size = to_double(box.upper) - to_double(box.lower);
+  return !(volume > kLeastShare * size.x * size.y * size.z);
+}
+
 // One triangle's use of an edge.
 struct EdgeUse {
   std::uint32_t high;       // the edge's higher vertex

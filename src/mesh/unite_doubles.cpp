@@ -68,12 +68,9 @@ std::size_t count_unbalanced_edges(const Mesh& mesh) {
   return count;
 }
 
-// What has less volume than this share of its box is flat: a fold, not a body.
-constexpr double kFlatVolumeShare = 1e-9;
-
+// A fold is none.
 bool is_body(const Shell& shell) {
-  const Vec3d size = to_double(shell.box.upper) - to_double(shell.box.lower);
-  return shell.closed && std::abs(shell.volume) > kFlatVolumeShare * size.x * size.y * size.z;
+  return shell.closed && !is_flat(std::abs(shell.volume), shell.box);
 }
 
 // Of the repeated triangles those that make up closed bodies among themselves.

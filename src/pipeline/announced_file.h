@@ -28,7 +28,4 @@ class AnnouncedFile {
   std::optional<PendingFile> file_;
 };
 
-// Throws UsageError if writing to `output` would replace `model`.
-void require_other_file(const std::filesystem::path& model, const std::filesystem::path& output);
-
 }  // namespace aerate

@@ -175,7 +175,6 @@ HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& 
 
 HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
   static_cast<void>(solid_format_of(options));  // refuses what cannot be written
-  require_other_file(options.model, options.output);
   JobLog log(monitor);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);

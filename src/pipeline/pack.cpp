@@ -191,7 +191,6 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
 
 PackReport pack(const PackOptions& options, Monitor& monitor) {
   const SphereFormat format = sphere_format_of(options.output);
-  require_other_file(options.model, options.output);
 
   JobLog log(monitor);
   PackReport report;

@@ -51,15 +51,8 @@ constexpr int kMostHalvings = 3;
 constexpr double kLongestModel = 1e6;
 constexpr double kShortestModel = 1e-3;
 
-// A closed mesh whose volume is less than this share of its bounding box's is flat: rounding, not a solid.
-constexpr double kFlatVolumeShare = 1e-9;
-
 std::string name_of(const PreparedModel& model) {
   return model.input.path.filename().string();
-}
-
-double diagonal_of(const Box3f& box) {
-  return length(to_double(box.upper) - to_double(box.lower));
 }
 
 // For an option: three digits, none of them rounded down.
@@ -100,8 +93,8 @@ void require_solid(const PreparedModel& model) {
                                 name_of(model), counted(inspection.misoriented_edges, "edge", "edges")),
                     "make the normals consistent in a mesh editor");
   }
-  const Vec3d size = to_double(inspection.box.upper) - to_double(inspection.box.lower);
-  if (!(inspection.filled_volume > kFlatVolumeShare * size.x * size.y * size.z)) {
+  if (is_flat(inspection.filled_volume, inspection.box)) {
+    const Vec3d size = to_double(inspection.box.upper) - to_double(inspection.box.lower);
     throw MeshError(fmt::format("{}: the surface is flat or encloses no volume ({:.3g} x {:.3g} x {:.3g} mm)",
                                 name_of(model), size.x, size.y, size.z),
                     "a solid needs three dimensions; see 'aerate inspect'");

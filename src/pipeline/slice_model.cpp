@@ -65,7 +65,6 @@ std::vector<SlicedForm> slice_what_can_be_hollowed(const std::vector<PrintForm>&
 SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   const FormRequest& request = options.request;
   require_no_models_name(options.output);
-  require_other_file(request.hollow.model, options.output);
   SliceReport report;
   report.model = request.hollow.model;
   report.output = options.output;
