@@ -12,7 +12,10 @@
 #include "files/formats.h"
 #include "files/input_file.h"
 #include "files/load.h"
+#include "tests/support/binary_stl.h"
 #include "tests/support/caught.h"
+#include "tests/support/same_corners.h"
+#include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 
 // What programs write that is not quite as a format has it: read whole where nothing has to be guessed, else
@@ -264,6 +267,32 @@ TEST(Lenient, OffSaysWhatItsVerticesHave) {
 TEST(Lenient, OffWithoutItsKeywordIsRefusedAtOnce) {
   for (const std::string keyword : {"OFF500000000", "OFF88888888888888", "XOFF", "off"})
     EXPECT_TRUE(contains(refusal(MeshFormat::off, replaced(kOff, "OFF", keyword)), "no OFF file")) << keyword;
+}
+
+// A header that promises less than there is leaves the rest out, and that is said.
+TEST(Lenient, WhatFollowsBeyondAHeadersPromiseIsSaid) {
+  const LoadedModel of_off = load(MeshFormat::off, replaced(kOff, "4 4 6", "4 2 6"));
+  EXPECT_EQ(of_off.mesh.triangles.size(), 2u);
+  ASSERT_EQ(of_off.notices.size(), 1u);
+  EXPECT_TRUE(contains(of_off.notices[0], "line 9"));
+  EXPECT_TRUE(load(MeshFormat::ply, std::string(kPly) + "\n").notices.empty());
+  EXPECT_EQ(load(MeshFormat::ply, replaced(kPly, "face 4", "face 3")).notices.size(), 1u);
+}
+
+TEST(Lenient, BytesAfterTheTrianglesOfABinaryStlAreSaid) {
+  const Mesh box = make_box({0, 0, 0}, {1, 2, 3});
+  const LoadedModel model = load(MeshFormat::stl, to_binary_stl(box) + "a comment");
+  expect_same_corners(model.mesh, box);
+  ASSERT_EQ(model.notices.size(), 1u);
+  EXPECT_TRUE(contains(model.notices[0], "9 bytes follow"));
+}
+
+// The fourth number of a vertex is a curve's weight.
+TEST(Lenient, WeightsOfObjVerticesDoNotMoveThem) {
+  const LoadedModel model = load(MeshFormat::obj, "v 2 0 0 2\nv 0 2 0 0.5\nv 0 0 2 1\nf 1 2 3\n");
+  ASSERT_EQ(model.mesh.positions.size(), 3u);
+  EXPECT_EQ(model.mesh.positions[0], (Vec3f{2, 0, 0}));
+  EXPECT_EQ(model.mesh.positions[1], (Vec3f{0, 2, 0}));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "files/load.h"
 #include "files/three_mf.h"
 #include "tests/support/caught.h"
+#include "tests/support/same_corners.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 
@@ -24,17 +25,6 @@ class ThreeMf : public testing::Test {
 };
 
 // Triangle by triangle, corner by corner.
-void expect_same_corners(const Mesh& read, const Mesh& written) {
-  ASSERT_EQ(read.triangles.size(), written.triangles.size());
-  for (std::size_t i = 0; i < read.triangles.size(); ++i) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Vec3f a = read.positions[read.triangles[i][corner]];
-      const Vec3f b = written.positions[written.triangles[i][corner]];
-      ASSERT_TRUE(a == b) << "triangle " << i;
-    }
-  }
-}
-
 TEST_F(ThreeMf, KeepsTheBitsOfCoordinatesOfAnySize) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> mantissa(-1, 1);

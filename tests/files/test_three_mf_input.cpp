@@ -10,6 +10,7 @@
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/three_mf_xml.h"
 #include "tests/support/zip.h"
 
 namespace aerate::test {
@@ -17,43 +18,14 @@ namespace {
 
 using Files = std::vector<std::pair<std::string, std::string>>;
 
-constexpr const char* kCore = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
-
-std::string mesh_xml(const Mesh& mesh, const std::string& beside = "") {
-  std::string xml = "<mesh><vertices>";
-  for (const Vec3f p : mesh.positions) xml += fmt::format(R"(<vertex x="{}" y="{}" z="{}"/>)", p.x, p.y, p.z);
-  xml += "</vertices><triangles>";
-  for (const Triangle& t : mesh.triangles)
-    xml += fmt::format(R"(<triangle v1="{}" v2="{}" v3="{}"/>)", t[0], t[1], t[2]);
-  return xml + "</triangles>" + beside + "</mesh>";
-}
-
 std::string box_xml(const std::string& beside = "") {
   return mesh_xml(make_box({0, 0, 0}, {20, 20, 20}), beside);
-}
-
-std::string object_xml(int id, const std::string& content, const std::string& attributes = "") {
-  return fmt::format(R"(<object id="{}" {}>{}</object>)", id, attributes, content);
 }
 
 std::string components_xml(const std::vector<int>& ids) {
   std::string xml = "<components>";
   for (const int id : ids) xml += fmt::format(R"(<component objectid="{}"/>)", id);
   return xml + "</components>";
-}
-
-std::string item_xml(int id, const std::string& attributes = "") {
-  return fmt::format(R"(<item objectid="{}" {}/>)", id, attributes);
-}
-
-std::string model_xml(const std::string& objects, const std::string& items,
-                      const std::string& attributes = "") {
-  return fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
-<model unit="millimeter" xmlns="{}" {}>
-<resources>{}</resources>
-<build>{}</build>
-</model>)",
-                     kCore, attributes, objects, items);
 }
 
 std::string box_model(const std::string& attributes = "") {
