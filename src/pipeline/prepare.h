@@ -10,6 +10,7 @@
 #include "mesh/inspect.h"
 #include "pipeline/input_facts.h"
 #include "pipeline/options.h"
+#include "pipeline/remesh_without_loss.h"
 #include "printing/remesh.h"
 
 namespace aerate {
@@ -27,10 +28,9 @@ struct PreparedModel {
 // How the surface may be changed to make the model usable.
 struct SurfacePolicy {
   SurfaceMode mode = SurfaceMode::keep;
-  std::optional<double> weld = {};        // mm; see HollowOptions
-  std::optional<double> max_hole = {};    // mm; see HollowOptions
-  std::optional<double> voxel_size = {};  // mm, for remeshing; else chosen
-  double voxel_to_begin_with = 0;         // mm: made finer where it loses parts of the model
+  std::optional<double> weld = {};      // mm; see HollowOptions
+  std::optional<double> max_hole = {};  // mm; see HollowOptions
+  VoxelRequest voxels = {};             // for remeshing
 };
 
 // Reads and inspects a model; notes several parts. Throws what load_model throws.
