@@ -144,7 +144,7 @@ class DrainedCarver {
     }
     for (std::size_t i = 0; i < plan_.channels.size(); ++i) add_channel(i);
     for (std::size_t i = 0; i < plan_.holes.size(); ++i) add_hole(hole_rings_[i], outer.holes[i]);
-    drop_unused_vertices();
+    drop_unused_vertices(solid_.mesh);
     return std::move(solid_);
   }
 
@@ -255,24 +255,6 @@ class DrainedCarver {
       add(t);
     }
     solid_.close_part(PartKind::hole);
-  }
-
-  void drop_unused_vertices() {
-    Mesh& mesh = solid_.mesh;
-    std::vector<std::uint32_t> renumbered(mesh.positions.size(), 0);
-    for (const Triangle& t : mesh.triangles) {
-      for (const std::uint32_t v : t) renumbered[v] = 1;
-    }
-    std::uint32_t count = 0;
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-      if (renumbered[v] == 0) continue;
-      mesh.positions[count] = mesh.positions[v];
-      renumbered[v] = count++;
-    }
-    mesh.positions.resize(count);
-    for (Triangle& t : mesh.triangles) {
-      for (std::uint32_t& v : t) v = renumbered[v];
-    }
   }
 
   struct RingPair {

@@ -82,11 +82,15 @@ void require_sound_edges(const Topology& topology, const Expected& expected) {
   if (counts.misoriented > 0) fail_check("it has {} misoriented edges", counts.misoriented);
   if (counts.non_manifold > model.non_manifold)
     fail_check("it has {} non-manifold edges, the model has {}", counts.non_manifold, model.non_manifold);
-  // A void adds a sphere (2); a tube takes a disc at either end (-2), and is a cylinder (0).
+  // A void adds its own (a ball 2); a tube takes a disc at either end (-2), and is a cylinder (0).
   const DrainagePlan& plan = *expected.drainage;
   const auto tubes = static_cast<std::int64_t>(plan.channels.size() + plan.holes.size());
-  const auto voids = static_cast<std::int64_t>(expected.packing.spheres.size());
-  const std::int64_t planned = model.euler + 2 * voids - 2 * tubes;
+  auto voids = 2 * static_cast<std::int64_t>(expected.packing.spheres.size());
+  if (expected.cells != nullptr) {
+    voids = 0;
+    for (const CellVoid& piece : expected.cells->voids) voids += piece.euler;
+  }
+  const std::int64_t planned = model.euler + voids - 2 * tubes;
   if (counts.euler != planned)
     fail_check(
         "its Euler characteristic is {} instead of {}: voids, channels and holes do not join as planned",

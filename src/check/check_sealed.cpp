@@ -48,6 +48,8 @@ Finding look_at(std::span<const Triangle> triangles) {
   return finding;
 }
 
+}  // namespace
+
 // A new surface: what inspection found out about it was before vertices at one place became one.
 void require_sound_outer(const Mesh& read_back, const Expected& expected) {
   const Inspection found = inspect(submesh(read_back, triangles_of(read_back, expected.solid.parts.front())));
@@ -59,8 +61,6 @@ void require_sound_outer(const Mesh& read_back, const Expected& expected) {
                expected.inspection.non_manifold_edges);
   if (found.volume <= 0) fail_check("the outer surface is inside out");
 }
-
-}  // namespace
 
 void check_sealed(const Mesh& read_back, const Expected& expected, Monitor& monitor) {
   if (expected.outer == OuterSurface::remeshed) require_sound_outer(read_back, expected);

@@ -12,4 +12,7 @@ namespace aerate {
 // no vertex of another. On all threads. Throws FailureError for the first that is not so; InterruptedError.
 void check_sealed(const Mesh& read_back, const Expected& expected, Monitor& monitor);
 
+// A remeshed outer surface alone: closed and oriented, without new non-manifold edges. Throws FailureError.
+void require_sound_outer(const Mesh& read_back, const Expected& expected);
+
 }  // namespace aerate

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "check/check_failure.h"
@@ -87,30 +88,68 @@ void require_below_roof(const Packing& packing, const EscapeHole& hole, std::siz
 
 template <typename Way>
 void check_parts(const Mesh& read_back, std::span<const SolidPart> parts, const std::vector<Way>& ways,
-                 const char* what, const Packing& packing) {
+                 const char* what, const Packing* packing) {
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const auto flaw = flaw_of_tube(read_back, parts[i], ways[i].tube);
     if (flaw) fail_check("{} {}: {}", what, i, *flaw);
-    require_below_roof(packing, ways[i], i);
+    if (packing != nullptr) require_below_roof(*packing, ways[i], i);
   }
 }
 
+// How far a tube's axis is from voids, by their number; not for those that it leads to.
+double distance_to_ball(const Expected& expected, std::size_t ball, const Tube& tube) {
+  return VoidShape(expected.packing.spheres[ball], expected.packing.limits.roof)
+      .distance_to({tube.start, tube.end});
+}
+
+class CellDistances {
+ public:
+  CellDistances(const Mesh& read_back, const Expected& expected) : mesh_(read_back) {
+    for (const SolidPart& part : expected.solid.of(PartKind::void_surface)) {
+      Box3f box = kernels::empty_box();
+      for (const Triangle& t : triangles_of(read_back, part))
+        box = kernels::united(box, kernels::box_of(facet_of(read_back, t)));
+      parts_.push_back({part, box});
+    }
+  }
+
+  // No less than `looked_for` is told apart.
+  double operator()(std::size_t cell, const Tube& tube, double looked_for) const {
+    const auto& [part, box] = parts_[cell];
+    const Vec3d middle = (tube.start + tube.end) * 0.5;
+    const double reach = looked_for + length(tube.end - tube.start) / 2;
+    if (kernels::distance_squared_to_box(middle, box) > reach * reach) return looked_for;
+    double least = looked_for;
+    for (const Triangle& t : triangles_of(mesh_, part))
+      least = std::min(least, distance_to_facet({tube.start, tube.end}, facet_of(mesh_, t)));
+    return least;
+  }
+
+ private:
+  const Mesh& mesh_;
+  std::vector<std::pair<SolidPart, Box3f>> parts_;
+};
+
 // Tubes keep the gap from voids that they do not lead to, and from each other; those that lead to the same
 // void only have to be apart.
-void require_gaps(const Packing& packing, const DrainagePlan& plan) {
-  const std::vector<Sphere>& balls = packing.spheres;
-  const double gap = packing.limits.gap;
+void require_gaps(const Mesh& read_back, const Expected& expected) {
+  const DrainagePlan& plan = *expected.drainage;
+  const double gap = expected.packing.limits.gap;
   std::vector<PlacedTube> tubes;
   for (const Channel& channel : plan.channels) tubes.push_back({&channel.tube, channel.from, channel.to});
   for (const EscapeHole& hole : plan.holes) tubes.push_back({&hole.tube, hole.from, hole.from});
+  std::optional<CellDistances> to_cells;
+  if (expected.cells != nullptr) to_cells.emplace(read_back, expected);
+  const std::size_t voids = expected.solid.of(PartKind::void_surface).size();
   for (std::size_t i = 0; i < tubes.size(); ++i) {
     const Tube& tube = *tubes[i].tube;
-    for (std::uint32_t ball = 0; ball < balls.size(); ++ball) {
-      if (ball == tubes[i].from || ball == tubes[i].to) continue;
-      const double distance =
-          VoidShape(balls[ball], packing.limits.roof).distance_to({tube.start, tube.end}) - tube.radius;
+    for (std::size_t other = 0; other < voids; ++other) {
+      if (other == tubes[i].from || other == tubes[i].to) continue;
+      const double distance = (to_cells ? (*to_cells)(other, tube, gap + tube.radius + 1)
+                                        : distance_to_ball(expected, other, tube)) -
+                              tube.radius;
       if (distance < gap - kLimitError)
-        fail_check("a channel or hole is {:.9g} mm from void {}, the gap is {:.9g} mm", distance, ball, gap);
+        fail_check("a channel or hole is {:.9g} mm from void {}, the gap is {:.9g} mm", distance, other, gap);
     }
     for (std::size_t j = 0; j < i; ++j)
       require_spacing(tube, *tubes[j].tube, tubes[i].shares_void_with(tubes[j]) ? 0 : gap);
@@ -139,9 +178,11 @@ double channel_wall(const SurfaceIndex& surface, const DrainagePlan& plan) {
 double check_tubes(const Mesh& read_back, const Expected& expected) {
   const DrainagePlan& plan = *expected.drainage;
   const Packing& packing = expected.packing;
-  check_parts(read_back, expected.solid.of(PartKind::channel), plan.channels, "channel", packing);
-  check_parts(read_back, expected.solid.of(PartKind::hole), plan.holes, "escape hole", packing);
-  require_gaps(packing, plan);
+  const Packing* roofed =
+      expected.cells == nullptr ? &packing : nullptr;  // cells have no roofs to open below
+  check_parts(read_back, expected.solid.of(PartKind::channel), plan.channels, "channel", roofed);
+  check_parts(read_back, expected.solid.of(PartKind::hole), plan.holes, "escape hole", roofed);
+  require_gaps(read_back, expected);
   const double wall = channel_wall(expected.surface, plan);
   if (wall < packing.limits.wall - kSpacing / 2 - kLimitError)
     fail_check("the wall beside a channel is {:.9g} mm, the limit {:.9g} mm", wall, packing.limits.wall);

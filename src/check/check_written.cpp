@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "check/check_cells.h"
 #include "check/check_drained.h"
 #include "check/check_failure.h"
 #include "check/check_sealed.h"
@@ -33,7 +34,8 @@ constexpr std::size_t kTrianglesPerSum = std::size_t{1} << 14;
 
 void require_planned_parts(const Mesh& read_back, const Expected& expected) {
   const auto made = [&](PartKind kind) { return expected.solid.of(kind).size(); };
-  const std::size_t voids = expected.packing.spheres.size();
+  const std::size_t voids =
+      expected.cells != nullptr ? expected.cells->voids.size() : expected.packing.spheres.size();
   const std::size_t channels = expected.drainage != nullptr ? expected.drainage->channels.size() : 0;
   const std::size_t holes = expected.drainage != nullptr ? expected.drainage->holes.size() : 0;
   if (made(PartKind::void_surface) != voids || made(PartKind::channel) != channels ||
@@ -91,7 +93,7 @@ std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const Ex
       read_back,
       expected.drainage != nullptr ? std::span(&all, 1) : expected.solid.of(PartKind::void_surface), roof,
       monitor);
-  require_bridged(ceilings, roof, expected.tolerance);
+  if (expected.cells == nullptr) require_bridged(ceilings, roof, expected.tolerance);
   return ceilings;
 }
 
@@ -103,13 +105,8 @@ struct Remainder {
 };
 
 // Sealed voids have volumes of their own.
-Remainder without_sealed(const Mesh& read_back, const VolumeMoments& whole,
-                         const std::vector<MeasuredVoid>& voids, Monitor& monitor) {
-  VolumeMoments in_voids;
-  for (const MeasuredVoid& measured : voids) {
-    in_voids.volume += measured.volume;
-    in_voids.first_moment = in_voids.first_moment + measured.first_moment;
-  }
+Remainder without_sealed(const Mesh& read_back, const VolumeMoments& whole, const VolumeMoments& in_voids,
+                         Monitor& monitor) {
   const VolumeMoments rest{whole.volume - in_voids.volume, whole.first_moment - in_voids.first_moment};
   const double written = volume_of(read_back, monitor);
   if (std::abs(rest.volume - written) > kSummationError * whole.volume)
@@ -117,9 +114,18 @@ Remainder without_sealed(const Mesh& read_back, const VolumeMoments& whole,
   return {in_voids.volume, written, rest.first_moment * (1 / rest.volume)};
 }
 
-// Balls and channels outside them, and holes to where their cut ends.
+// Of cells, more (1) or less (-1) by what their surfaces may be off.
+double volume_of_cells(const Expected& expected, double sign) {
+  double volume = 0;
+  for (const CellVoid& piece : expected.cells->voids)
+    volume += piece.planned_volume +
+              sign * std::max(piece.deviation, expected.tolerance) * surface_area(piece.surface);
+  return volume;
+}
+
+// Voids and channels outside them, and holes to where their cut ends.
 double most_removed(const Expected& expected) {
-  double volume = total_volume(expected.packing);
+  double volume = expected.cells != nullptr ? volume_of_cells(expected, 1) : total_volume(expected.packing);
   const auto add = [&](const Tube& tube, double beyond) {
     volume +=
         std::numbers::pi * tube.radius * tube.radius * (length(tube.end - tube.start) + beyond * tube.radius);
@@ -130,6 +136,7 @@ double most_removed(const Expected& expected) {
 }
 
 double least_removed(const Expected& expected) {
+  if (expected.cells != nullptr) return volume_of_cells(expected, -1);
   double volume = 0;
   for (const Sphere& ball : expected.packing.spheres)
     volume += VoidShape(ball, expected.packing.limits.roof).volume_within(expected.tolerance);
@@ -166,6 +173,54 @@ std::size_t count_cavities(const Inspection& model) {
                                                 [](const Shell& shell) { return shell.volume < 0; }));
 }
 
+// What is found on voids of either shape.
+struct MeasuredVoids {
+  std::optional<VolumeMoments> sealed;  // of those that are sealed
+  Clearances clearances;
+  double deviation = 0;
+  double smallest_radius = kInfinity, largest_radius = 0;
+  std::size_t roof_count = 0;
+};
+
+MeasuredVoids measure_balls(const Mesh& read_back, const Expected& expected, Monitor& monitor) {
+  const bool drains = expected.drainage != nullptr;
+  if (!drains) check_sealed(read_back, expected, monitor);
+  MeasuredVoids result;
+  std::vector<Sphere> balls;
+  VolumeMoments inside;
+  for (const MeasuredVoid& measured : check_voids(read_back, expected, monitor)) {
+    balls.push_back(measured.ball);
+    result.smallest_radius = std::min(result.smallest_radius, measured.ball.radius);
+    result.largest_radius = std::max(result.largest_radius, measured.ball.radius);
+    result.deviation = std::max(result.deviation, measured.depth);
+    inside.volume += measured.volume;
+    inside.first_moment = inside.first_moment + measured.first_moment;
+  }
+  if (!drains) result.sealed = inside;
+  const std::vector<Sphere>& planned = expected.packing.spheres;
+  result.roof_count =
+      static_cast<std::size_t>(std::count_if(planned.begin(), planned.end(), [&](const Sphere& sphere) {
+        return expected.packing.limits.roof.shapes(sphere.radius);
+      }));
+  result.clearances = measure_limits(balls, expected);
+  return result;
+}
+
+MeasuredVoids measure_cells(const Mesh& read_back, const Expected& expected, Monitor& monitor) {
+  if (expected.outer == OuterSurface::remeshed) require_sound_outer(read_back, expected);
+  const MeasuredCells measured = check_cells(read_back, expected, monitor);
+  MeasuredVoids result;
+  if (expected.drainage == nullptr) result.sealed = measured.inside;
+  result.clearances = measured.clearances;
+  result.deviation = measured.deviation;
+  for (const CellVoid& piece : expected.cells->voids) {
+    const double radius = expected.packing.spheres[piece.cell].radius;
+    result.smallest_radius = std::min(result.smallest_radius, radius);
+    result.largest_radius = std::max(result.largest_radius, radius);
+  }
+  return result;
+}
+
 }  // namespace
 
 OutputFacts check_written(const Mesh& read_back, const Expected& expected, Monitor& monitor) {
@@ -176,8 +231,8 @@ OutputFacts check_written(const Mesh& read_back, const Expected& expected, Monit
 
   OutputFacts facts;
   const bool drains = expected.drainage != nullptr;
-  if (!drains) check_sealed(read_back, expected, monitor);
-  const std::vector<MeasuredVoid> voids = check_voids(read_back, expected, monitor);
+  const MeasuredVoids voids = expected.cells != nullptr ? measure_cells(read_back, expected, monitor)
+                                                        : measure_balls(read_back, expected, monitor);
   if (drains) {
     facts.drainage = {.cavities_of_model = count_cavities(expected.inspection),
                       .cut_triangles = cut_triangles,
@@ -189,29 +244,20 @@ OutputFacts check_written(const Mesh& read_back, const Expected& expected, Monit
   facts.triangle_count = read_back.triangles.size();
   facts.outer_triangle_count = expected.solid.outer_triangle_count();
   facts.void_triangle_count = facts.triangle_count - facts.outer_triangle_count;
-  facts.void_count = voids.size();
-  facts.smallest_radius = std::numeric_limits<double>::infinity();
-  std::vector<Sphere> balls;
-  for (const MeasuredVoid& measured : voids) {
-    balls.push_back(measured.ball);
-    facts.smallest_radius = std::min(facts.smallest_radius, measured.ball.radius);
-    facts.largest_radius = std::max(facts.largest_radius, measured.ball.radius);
-    facts.void_deviation = std::max(facts.void_deviation, measured.depth);
-  }
-  const std::vector<Sphere>& planned = expected.packing.spheres;
-  facts.roof_count =
-      static_cast<std::size_t>(std::count_if(planned.begin(), planned.end(), [&](const Sphere& sphere) {
-        return expected.packing.limits.roof.shapes(sphere.radius);
-      }));
+  facts.void_count = expected.solid.of(PartKind::void_surface).size();
+  facts.smallest_radius = voids.smallest_radius;
+  facts.largest_radius = voids.largest_radius;
+  facts.void_deviation = voids.deviation;
+  facts.roof_count = voids.roof_count;
   facts.ceilings = measure_limited_ceilings(read_back, expected, monitor);
-  facts.clearances = measure_limits(balls, expected);
+  facts.clearances = voids.clearances;
   monitor.check_interrupted();
 
   const VolumeMoments whole = volume_moments(expected.model);
-  add_volumes(
-      facts, whole,
-      drains ? without_drained(read_back, whole, expected) : without_sealed(read_back, whole, voids, monitor),
-      expected.inspection);
+  add_volumes(facts, whole,
+              voids.sealed ? without_sealed(read_back, whole, *voids.sealed, monitor)
+                           : without_drained(read_back, whole, expected),
+              expected.inspection);
   return facts;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <fmt/format.h>
+#include <utility>
 #include <vector>
 
 #include "kernels/constants.h"
@@ -60,32 +61,56 @@ class DirectedEdges {
   std::vector<std::uint32_t> edges_;
 };
 
-// Number of triangles that can be reached from the first one across edges.
-std::size_t count_connected(const std::vector<std::uint32_t>& twins) {
+// Sets of triangles that hang together across edges.
+std::size_t count_shells(const std::vector<std::uint32_t>& twins) {
   std::vector<bool> is_reached(twins.size() / 3);
-  std::vector<std::uint32_t> waiting{0};
-  is_reached[0] = true;
+  std::vector<std::uint32_t> waiting;
   std::size_t count = 0;
-  while (!waiting.empty()) {
-    const std::uint32_t triangle = waiting.back();
-    waiting.pop_back();
+  for (std::uint32_t first = 0; first < is_reached.size(); ++first) {
+    if (is_reached[first]) continue;
     ++count;
-    for (std::uint32_t edge = 3 * triangle; edge < 3 * triangle + 3; ++edge) {
-      const std::uint32_t neighbour = twins[edge] / 3;
-      if (is_reached[neighbour]) continue;
-      is_reached[neighbour] = true;
-      waiting.push_back(neighbour);
+    is_reached[first] = true;
+    waiting.push_back(first);
+    while (!waiting.empty()) {
+      const std::uint32_t triangle = waiting.back();
+      waiting.pop_back();
+      for (std::uint32_t edge = 3 * triangle; edge < 3 * triangle + 3; ++edge) {
+        const std::uint32_t neighbour = twins[edge] / 3;
+        if (is_reached[neighbour]) continue;
+        is_reached[neighbour] = true;
+        waiting.push_back(neighbour);
+      }
     }
   }
   return count;
 }
 
+// Fans of triangles about vertices. A vertex where surfaces only touch has more than one.
+std::size_t count_fans(const std::vector<std::uint32_t>& twins) {
+  std::vector<bool> is_seen(twins.size());
+  std::size_t count = 0;
+  for (std::uint32_t first = 0; first < twins.size(); ++first) {
+    if (is_seen[first]) continue;
+    ++count;
+    for (std::uint32_t edge = first; !is_seen[edge];) {
+      is_seen[edge] = true;
+      const std::uint32_t before = edge % 3 == 0 ? edge + 2 : edge - 1;
+      edge = twins[before];
+    }
+  }
+  return count;
+}
+
+SurfaceTopology flawed(std::string flaw) {
+  return {std::move(flaw), 0, 0, 0};
+}
+
 }  // namespace
 
-std::optional<std::string> flaw_of_sphere_shell(std::span<const Triangle> triangles) {
-  if (triangles.empty()) return "it has no triangles";
+SurfaceTopology topology_of(std::span<const Triangle> triangles) {
+  if (triangles.empty()) return flawed("it has no triangles");
   for (const Triangle& t : triangles) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return "a triangle uses a vertex twice";
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return flawed("a triangle uses a vertex twice");
   }
 
   // Closed, oriented and 2-manifold along its edges: each is run along exactly once in either direction.
@@ -94,19 +119,26 @@ std::optional<std::string> flaw_of_sphere_shell(std::span<const Triangle> triang
   bool is_open = false;
   for (std::uint32_t e = 0; e < twins.size(); ++e) {
     if (edges.find(edges.start_of(e), edges.end_of(e)).count > 1)
-      return "an edge has more than two triangles, or two that face opposite ways";
+      return flawed("an edge has more than two triangles, or two that face opposite ways");
     const DirectedEdges::Found twin = edges.find(edges.end_of(e), edges.start_of(e));
     is_open = is_open || twin.count == 0;
     twins[e] = twin.edge;
   }
-  if (is_open) return "it is open";
+  if (is_open) return flawed("it is open");
 
-  // Connected across edges, not merely through vertices: then it is a sphere by Euler's formula, and no
-  // vertex pinches it, since each that did would make the sum less.
-  if (count_connected(twins) != triangles.size()) return "it is more than one shell";
-  const auto euler = static_cast<std::ptrdiff_t>(edges.vertex_count() + triangles.size()) -
-                     static_cast<std::ptrdiff_t>(twins.size() / 2);
-  if (euler != 2) return fmt::format("its Euler characteristic is {} instead of 2", euler);
+  SurfaceTopology topology;
+  topology.shell_count = count_shells(twins);
+  topology.euler = static_cast<std::int64_t>(edges.vertex_count() + triangles.size()) -
+                   static_cast<std::int64_t>(twins.size() / 2);
+  topology.pinch_count = count_fans(twins) - edges.vertex_count();
+  return topology;
+}
+
+std::optional<std::string> flaw_of_sphere_shell(std::span<const Triangle> triangles) {
+  SurfaceTopology topology = topology_of(triangles);
+  if (topology.flaw) return topology.flaw;
+  if (topology.shell_count != 1) return "it is more than one shell";
+  if (topology.euler != 2) return fmt::format("its Euler characteristic is {} instead of 2", topology.euler);
   return std::nullopt;
 }
 

@@ -63,6 +63,20 @@ struct HollowCommand {
             "--spheres", spheres,
             "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
         ->type_name("FILE");
+    command
+        .add_option(
+            "--shape", shape,
+            "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
+            "thick as --gap and take nearly all that is deeper than --wall")
+        ->check(CLI::IsMember({"spheres", "cells"}))
+        ->type_name("SHAPE")
+        ->capture_default_str();
+    command
+        .add_option("--fillet", fillet,
+                    "Cells: radius of their inner edges; what is narrower than a ball of it stays solid "
+                    "(default the channels' radius, else 1)")
+        ->check(number_between({}, kLongest, "mm"))
+        ->type_name("MM");
     add_tolerance(command, tolerance);
     command
         .add_option("--max-triangles", max_triangles,
@@ -118,6 +132,8 @@ struct HollowCommand {
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
     if (!options.modifiers) options = drainage.applied_to(std::move(options));
+    if (shape == "cells") options.cells = cells_under(options);
+    if (!options.cells && fillet) throw UsageError("--fillet without --shape cells", "spheres have no edges");
     options.tolerance = tolerance;
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
@@ -128,6 +144,15 @@ struct HollowCommand {
     options.heavier = print.heavier();
     require_tolerance_for(options.packing.limits(), tolerance);
     return options;
+  }
+
+  CellOptions cells_under(const HollowOptions& options) const {
+    const PackingLimits limits = options.packing.limits();
+    if (!options.modifiers && limits.roof.shapes(limits.max_radius))
+      throw UsageError(
+          "--shape cells: cells get no roofs so far, and ceilings are limited here",
+          "--as modifiers leaves the model solid; --bridge of twice --max-radius limits nothing");
+    return {fillet.value_or(options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet)};
   }
 
   void run() const {
@@ -147,6 +172,8 @@ struct HollowCommand {
   std::string flavor = of_slicers(flavor_of).front();
   double modifier_infill = ModifierOptions{}.infill_percent;
   std::string spheres;
+  std::string shape = "spheres";
+  std::optional<double> fillet;
   double tolerance = HollowOptions{}.tolerance;
   std::optional<double> max_triangles;
   std::string surface = "auto";

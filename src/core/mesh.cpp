@@ -23,6 +23,23 @@ Mesh submesh(const Mesh& mesh, std::span<const Triangle> triangles) {
   return part;
 }
 
+void drop_unused_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> renumbered(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t v : t) renumbered[v] = 1;
+  }
+  std::uint32_t count = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (renumbered[v] == 0) continue;
+    mesh.positions[count] = mesh.positions[v];
+    renumbered[v] = count++;
+  }
+  mesh.positions.resize(count);
+  for (Triangle& t : mesh.triangles) {
+    for (std::uint32_t& v : t) v = renumbered[v];
+  }
+}
+
 Box3f bounding_box(const Mesh& mesh) {
   constexpr float kFar = std::numeric_limits<float>::infinity();
   Box3f box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};

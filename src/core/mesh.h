@@ -29,6 +29,9 @@ inline kernels::Facet facet_of(const Mesh& mesh, const Triangle& t) {
 // Some triangles of the mesh with vertices of their own, in order of first use: those that shared one still do.
 Mesh submesh(const Mesh& mesh, std::span<const Triangle> triangles);
 
+// Takes vertices out that no triangle uses; the others keep their order.
+void drop_unused_vertices(Mesh& mesh);
+
 // Smallest box around the positions that triangles use; empty (lower > upper) for a mesh without triangles.
 Box3f bounding_box(const Mesh& mesh);
 

@@ -1,7 +1,10 @@
 #include "pipeline/budget.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <string>
+#include <tbb/task_arena.h>
 
 #include "core/error.h"
 #include "pipeline/memory.h"
@@ -49,6 +52,27 @@ void require_memory_for_voids(const Packing& packing, double tolerance, std::siz
       bytes_of_result(static_cast<double>(in_voids), outer_triangles),
       fmt::format("a result of {} triangles ({} voids)", outer_triangles + in_voids, packing.spheres.size()),
       "give a larger --tolerance or --min-radius, or limit it with --max-triangles");
+}
+
+void require_memory_for_cells(const Mesh& mesh, const Packing& packing, const CellShape& shape) {
+  // About five triangles for each square of nodes before most are taken out, of no more surface than the model's
+  // and twice what plane walls between balls of the packing's sizes have; and the nodes that a thread looks at.
+  constexpr double kTrianglesPerSquare = 5, kBytesPerTriangle = 60, kBytesPerNode = 40;
+  const double spacing = node_spacing(shape, packing.limits);
+  double walls = 0, largest = 0;
+  for (const Sphere& sphere : packing.spheres) {
+    walls += 24 * sphere.radius * sphere.radius;
+    largest = std::max(largest, sphere.radius);
+  }
+  const double triangles = kTrianglesPerSquare * (surface_area(mesh) + walls) / (spacing * spacing);
+  const double nodes = signed_volume(mesh) / (spacing * spacing * spacing);
+  const double in_hand =
+      std::min(nodes, std::pow(4 * largest / spacing, 3) * tbb::this_task_arena::max_concurrency());
+  require(
+      triangles * kBytesPerTriangle + in_hand * kBytesPerNode,
+      fmt::format("cells with a fillet of {:g} mm to a tolerance of {:g} mm ({:.3g} million lattice nodes)",
+                  shape.fillet, shape.tolerance, nodes / 1e6),
+      "give a larger --tolerance or --fillet");
 }
 
 double tolerance_for(const Packing& packing, double asked, std::size_t outer_triangles,

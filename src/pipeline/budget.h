@@ -8,6 +8,7 @@
 #include "core/packing.h"
 #include "mesh/inspect.h"
 #include "pipeline/options.h"
+#include "printing/cells/shape_cells.h"
 
 namespace aerate {
 
@@ -18,6 +19,9 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
 // The same for what is made of the packing: the void surfaces, the file and its check. `outer_triangles` is
 // the size of the model's own surface.
 void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles);
+
+// The same for voids that fill cells.
+void require_memory_for_cells(const Mesh& mesh, const Packing& packing, const CellShape& shape);
 
 // The smallest tolerance, but no smaller than `asked`, with which the result has at most `max_triangles`.
 // Throws UsageError if none does. mm.

@@ -15,7 +15,9 @@
 #include "check/crossings.h"
 #include "core/error.h"
 #include "mesh/outward_shells.h"
+#include "packing/cell_drainage.h"
 #include "printing/carve_drained.h"
+#include "printing/cells/carve_drained_cells.h"
 #include "printing/cut_holes.h"
 #include "printing/tube_openings.h"
 
@@ -159,6 +161,45 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
     }
     if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[failed.front()]);
     for (const std::size_t i : failed) refused.push_back(planned.plan.holes[i].tube);
+  }
+}
+
+DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
+                         const PackingLimits& limits, const ProcessChoice& process,
+                         const HollowOptions& options, double tolerance, Monitor& monitor) {
+  monitor.stage("drain");
+  const DrainageRequest& request = *options.drainage;
+  warn_of_wide_tubes(process, limits.roof, request, monitor);
+  require_resolvable(model.mesh, request.channel_radius, tolerance, "a channel");
+  require_resolvable(model.mesh, request.hole_radius, tolerance, "an escape hole");
+  const OutwardShells outward(model.mesh, model.inspection, surface);
+  std::vector<Tube> refused;
+  const auto can_open = [&](const Tube& tube, std::uint32_t from) {
+    const auto is_it = [&](const Tube& other) { return other.start == tube.start && other.end == tube.end; };
+    return std::none_of(refused.begin(), refused.end(), is_it) &&
+           may_be_cut(model.mesh, surface, cells.voids[from], tube, tolerance) &&
+           !is_crossed_near(model.mesh, surface, tube);
+  };
+  while (true) {
+    PlannedCellDrainage planned =
+        plan_cell_drainage({surface, outward.winding()}, cells, limits, request, can_open, monitor);
+    CellVoids kept{cells.planes, cells.lattice, cells.ball_radius, {}};
+    for (const std::uint32_t i : planned.kept) kept.voids.push_back(cells.voids[i]);
+    auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
+    if (auto* solid = std::get_if<Solid>(&carved)) {
+      DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
+      tell_what_was_dropped(voids, cells.voids.size(), monitor);
+      return {std::move(kept), std::move(voids), std::move(*solid)};
+    }
+    const auto& uncut = std::get<UncutTubes>(carved);
+    if (!uncut.windows.empty()) {
+      const Tube& window = planned.plan.channels[uncut.windows.front()].tube;
+      throw FailureError(fmt::format("the window near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut",
+                                     window.start.x, window.start.y, window.start.z),
+                         "raise --tolerance or --fillet");
+    }
+    if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[uncut.holes.front()]);
+    for (const std::size_t i : uncut.holes) refused.push_back(planned.plan.holes[i].tube);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/cells.h"
 #include "core/drainage.h"
 #include "core/monitor.h"
 #include "core/packing.h"
@@ -34,6 +35,19 @@ struct DrainedPacking {
 // Throws what plan_drainage throws.
 DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Packing packing,
                      const ProcessChoice& process, const HollowOptions& options, Monitor& monitor);
+
+// Cells that drain, and what they leave of the model.
+struct DrainedCells {
+  CellVoids cells;  // those that are made
+  DrainedVoids voids;
+  Solid solid;
+};
+
+// The same for cells, which are joined by windows in the walls between them; carved as well, since that tells
+// whether a tube can be cut. Throws what plan_cell_drainage throws.
+DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
+                         const PackingLimits& limits, const ProcessChoice& process,
+                         const HollowOptions& options, double tolerance, Monitor& monitor);
 
 // Throws UsageError if voids within the limits are too small for the tubes that are asked for.
 void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits);

@@ -9,6 +9,7 @@
 #include "pipeline/announced_file.h"
 #include "pipeline/balance.h"
 #include "pipeline/budget.h"
+#include "pipeline/carve_as_cells.h"
 #include "pipeline/job_log.h"
 #include "pipeline/pack.h"
 #include "pipeline/print_prediction.h"
@@ -93,6 +94,7 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
                                    .surface = hollowed.surface,
                                    .inspection = hollowed.model.inspection,
                                    .packing = hollowed.packing,
+                                   .cells = hollowed.cells ? &*hollowed.cells : nullptr,
                                    .drainage = hollowed.drainage ? &hollowed.drainage->plan : nullptr,
                                    .tolerance = hollowed.carved.tolerance,
                                    .outer = surface_of(hollowed.model)},
@@ -117,6 +119,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.process = hollowed.request.process;
   report.method = name_of_method(options.packing);
   report.packing_statistics = hollowed.packing.statistics;
+  report.cells = options.cells;
   report.packing_density = total_volume(hollowed.packing) / model.inspection.filled_volume;
   report.packing_device = hollowed.packing.device;
   report.surface = surface_of(model);
@@ -145,10 +148,17 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
   PackingRequest request = request_of(options, monitor);
   PreparedModel model = prepare_model(options, monitor);
   auto [packing, surface] = pack_model(model, request, monitor);
+  if (options.cells) {
+    auto [cells, drainage, carved] =
+        carve_as_cells(model, surface, packing, request.process, options, monitor);
+    warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
+    return {std::move(request), std::move(model),    std::move(surface), std::move(packing),
+            std::move(cells),   std::move(drainage), std::move(carved)};
+  }
   auto [made, drainage, outer] = drain(model, surface, std::move(packing), request.process, options, monitor);
   CarvedModel carved = carve(model, surface, made, drainage, std::move(outer), options, monitor);
-  return {std::move(request), std::move(model),    std::move(surface),
-          std::move(made),    std::move(drainage), std::move(carved)};
+  return {std::move(request), std::move(model),    std::move(surface), std::move(made),
+          std::nullopt,       std::move(drainage), std::move(carved)};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/cells.h"
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "core/solid.h"
@@ -23,7 +24,8 @@ struct HollowedModel {
   PackingRequest request;  // what was packed: without voids that would cost more than they save
   PreparedModel model;
   SurfaceIndex surface;                  // of the model
-  Packing packing;                       // the voids that are made
+  Packing packing;                       // the voids that are made, or the spheres whose cells they are
+  std::optional<CellVoids> cells;        // what is made of them; absent: voids are the packing's own shapes
   std::optional<DrainedVoids> drainage;  // absent: each is sealed
   CarvedModel carved;
 };

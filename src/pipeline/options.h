@@ -63,6 +63,11 @@ struct ObjectName {
   std::string name;
 };
 
+// Voids fill the cells of their packing instead of being spheres.
+struct CellOptions {
+  double fillet = 1;  // mm: radius of their inner edges, and of the ball that has to fit everywhere in them
+};
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
@@ -70,6 +75,7 @@ struct HollowOptions {
   std::optional<ObjectName> object_name;
   LoadOptions load;
   PackingRequest packing;
+  std::optional<CellOptions> cells;
   SurfaceMode surface = SurfaceMode::automatic;
   // If given, voids become modifiers; the output has to be 3MF.
   std::optional<ModifierOptions> modifiers;

@@ -29,7 +29,8 @@ struct HollowReport {
   InputFacts input;
   PackingLimits limits;
   ProcessChoice process;
-  std::string method;  // name_of_method
+  std::string method;                // name_of_method
+  std::optional<CellOptions> cells;  // voids fill the cells of the packing; absent: they are its spheres
   PackingStatistics packing_statistics;
   double packing_density = 0;  // volume of the planned balls over that of the packed model
   DeviceUse packing_device;

@@ -1,0 +1,322 @@
+#include "printing/cells/carve_drained_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <tbb/parallel_for.h>
+#include <utility>
+
+#include "printing/cut_surface.h"
+#include "printing/tube_openings.h"
+
+namespace aerate {
+namespace {
+
+// A prism ends so far beyond the surface that it passes, mm; and the least that is left between a void's surface
+// and the model's for its ring.
+constexpr double kBeyond = 0.2;
+
+// Where lines along a tube pass surfaces, from its start.
+struct Passage {
+  double first = kInfinity, last = -kInfinity;
+
+  void add(double along) {
+    first = std::min(first, along);
+    last = std::max(last, along);
+  }
+};
+
+// Where a line from `start` in a unit direction passes a triangle.
+std::optional<double> passes(Vec3d start, Vec3d direction, const kernels::Facet& facet) {
+  const Vec3d a = to_double(facet.a), ab = to_double(facet.b) - a, ac = to_double(facet.c) - a;
+  const Vec3d p = cross(direction, ac);
+  const double determinant = dot(ab, p);
+  if (determinant == 0) return std::nullopt;
+  const Vec3d from_a = start - a;
+  const double u = dot(from_a, p) / determinant;
+  const Vec3d q = cross(from_a, ab);
+  const double v = dot(direction, q) / determinant;
+  if (u < 0 || v < 0 || u + v > 1) return std::nullopt;
+  return dot(ac, q) / determinant;
+}
+
+// Points about an axis, counter-clockwise seen against it.
+std::vector<Vec3d> ring_about(Vec3d centre, Vec3d axis, double radius, std::size_t sides) {
+  const TubeFrame frame = frame_of({centre, centre + axis, radius}, {0, 0, 1});
+  std::vector<Vec3d> ring;
+  for (std::size_t i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(sides);
+    ring.push_back(centre + frame.down * (radius * std::cos(angle)) +
+                   frame.across * (radius * std::sin(angle)));
+  }
+  if (dot(cross(ring[1] - ring[0], ring[2] - ring[0]), axis) < 0) std::reverse(ring.begin(), ring.end());
+  return ring;
+}
+
+// The two prisms of a tube, from the same ring: the other way its points run the other way round.
+struct PrismPair {
+  CuttingPrism inward;  // into the void that the tube starts in
+  CuttingPrism onward;
+};
+
+PrismPair prisms_of(const Tube& tube, double ring_at, double inward_length, double onward_length,
+                    double tolerance) {
+  const Vec3d axis = direction_of(tube);
+  const Vec3d middle = tube.start + axis * ring_at;
+  const double radius = shrunk(tube).radius;
+  PrismPair pair;
+  for (const Vec3d p : ring_about(middle, axis, radius, sides_of(tube, tolerance)))
+    pair.onward.ring.push_back(to_float(p));
+  pair.inward.ring.assign(pair.onward.ring.rbegin(), pair.onward.ring.rend());
+  // Rounding moves points of the ring along the axis.
+  constexpr double kSlack = 1e-3;
+  pair.onward.axis = axis;
+  pair.inward.axis = -axis;
+  pair.onward.start = middle - axis * kSlack;
+  pair.inward.start = middle + axis * kSlack;
+  pair.onward.length = onward_length + kSlack;
+  pair.inward.length = inward_length + kSlack;
+  pair.onward.radius = pair.inward.radius = tube.radius;
+  return pair;
+}
+
+PrismPair prisms_of_window(const Tube& tube, double tolerance) {
+  const double half = length(tube.end - tube.start) / 2;
+  return prisms_of(tube, half, half, half, tolerance);
+}
+
+// nullopt if no plane across the hole lies between the void's surface and the model's.
+std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::uint32_t> near_outside,
+                                        const Mesh& from, const Tube& tube, double tolerance) {
+  const Vec3d axis = direction_of(tube);
+  const double farthest = length(tube.end - tube.start) + kCutBeyond * tube.radius;
+  std::vector<Vec3d> starts = ring_about(tube.start, axis, tube.radius, sides_of(tube, tolerance));
+  starts.push_back(tube.start);
+  Passage out_of_void, outside;
+  for (const Vec3d start : starts) {
+    Passage line;
+    for (const Triangle& t : from.triangles) {
+      const auto along = passes(start, axis, facet_of(from, t));
+      if (along && *along > -tube.radius && *along < farthest) line.add(*along);
+    }
+    if (line.last < line.first) return std::nullopt;
+    out_of_void.add(line.last);
+    for (const std::uint32_t i : near_outside) {
+      const auto along = passes(start, axis, facet_of(outer, outer.triangles[i]));
+      if (along && *along > 0 && *along < farthest) outside.add(*along);
+    }
+  }
+  if (!(outside.first - out_of_void.last > kBeyond)) return std::nullopt;
+  const double ring_at = (outside.first + out_of_void.last) / 2;
+  return prisms_of(tube, ring_at, ring_at - out_of_void.first + kBeyond, farthest - ring_at, tolerance);
+}
+
+// A surface that is cut several times. Triangles that are cut away stay in the mesh, marked.
+struct CutMesh {
+  Mesh mesh;
+  std::size_t own_triangle_count = 0;
+  std::vector<char> is_gone;
+
+  explicit CutMesh(Mesh whole)
+      : mesh(std::move(whole)), own_triangle_count(mesh.triangles.size()), is_gone(own_triangle_count, 0) {}
+
+  std::vector<std::uint32_t> near(const CuttingPrism& prism, std::span<const std::uint32_t> own) const {
+    std::vector<std::uint32_t> result;
+    for (const std::uint32_t i : own) {
+      if (is_gone[i] == 0) result.push_back(i);
+    }
+    const Segment axis = axis_of(prism);
+    for (auto i = static_cast<std::uint32_t>(own_triangle_count); i < mesh.triangles.size(); ++i) {
+      if (is_gone[i] == 0 && distance_to_facet(axis, facet_of(mesh, mesh.triangles[i])) < reach_of(prism))
+        result.push_back(i);
+    }
+    return result;
+  }
+};
+
+// One end of a tube: the sides of its prism. Vertices from `ring_base` on are those of its ring.
+struct CutEnd {
+  std::vector<Triangle> sides;
+  std::uint32_t ring_base = 0;
+};
+
+bool cut(CutMesh& target, std::span<const std::uint32_t> own_near, const CuttingPrism& prism, CutEnd& end) {
+  const std::vector<std::uint32_t> near = target.near(prism, own_near);
+  auto made = cut_surface(target.mesh, near, prism);
+  if (!made) return false;
+  for (const std::uint32_t i : made->removed) target.is_gone[i] = 1;
+  Mesh& mesh = target.mesh;
+  mesh.positions.insert(mesh.positions.end(), made->new_positions.begin(), made->new_positions.end());
+  mesh.triangles.insert(mesh.triangles.end(), made->surface.begin(), made->surface.end());
+  target.is_gone.resize(mesh.triangles.size(), 0);
+  end.ring_base = static_cast<std::uint32_t>(mesh.positions.size());
+  end.sides = std::move(made->sides);
+  return true;
+}
+
+// What is to be cut, in the plan's order: windows, then holes.
+struct PlannedCut {
+  std::uint32_t from = 0;
+  std::optional<std::uint32_t> to;  // absent: to the outside
+  PrismPair prisms;
+  std::vector<std::uint32_t> near_outside;
+  CutEnd inward, onward;
+  bool is_made = false;
+};
+
+class Carver {
+ public:
+  Carver(const Mesh& outer, const SurfaceIndex& surface, const CellVoids& cells, const DrainagePlan& plan,
+         double tolerance)
+      : plan_(plan), outer_(outer) {
+    voids_.reserve(cells.voids.size());
+    for (const CellVoid& piece : cells.voids) voids_.emplace_back(piece.surface);
+    cuts_.resize(plan.channels.size() + plan.holes.size());
+    tbb::parallel_for(std::size_t{0}, cuts_.size(), [&](std::size_t i) {
+      PlannedCut& cut = cuts_[i];
+      if (i < plan.channels.size()) {
+        const Channel& channel = plan.channels[i];
+        cut.from = channel.from;
+        cut.to = channel.to;
+        cut.prisms = prisms_of_window(channel.tube, tolerance);
+        cut.is_made = true;
+        return;
+      }
+      const EscapeHole& hole = plan.holes[i - plan.channels.size()];
+      cut.from = hole.from;
+      const Vec3d beyond = direction_of(hole.tube) * (kCutBeyond * hole.tube.radius);
+      cut.near_outside =
+          surface.triangles_near({hole.tube.start, hole.tube.end + beyond}, hole.tube.radius + kBeyond);
+      const auto prisms =
+          prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube, tolerance);
+      if (!prisms) return;
+      cut.prisms = *prisms;
+      cut.near_outside = surface.triangles_near(axis_of(cut.prisms.onward), reach_of(cut.prisms.onward));
+      cut.is_made = true;
+    });
+  }
+
+  std::variant<Solid, UncutTubes> carve(Monitor& monitor) {
+    cut_voids();
+    monitor.check_interrupted();
+    for (PlannedCut& planned : cuts_) {
+      if (planned.to || !planned.is_made) continue;
+      planned.is_made = cut(outer_, planned.near_outside, planned.prisms.onward, planned.onward);
+      monitor.check_interrupted();
+    }
+    UncutTubes uncut;
+    for (std::size_t i = 0; i < cuts_.size(); ++i) {
+      if (cuts_[i].is_made) continue;
+      if (i < plan_.channels.size()) {
+        uncut.windows.push_back(i);
+      } else {
+        uncut.holes.push_back(i - plan_.channels.size());
+      }
+    }
+    if (!uncut.windows.empty() || !uncut.holes.empty()) return uncut;
+    return put_together();
+  }
+
+ private:
+  // Each void's surface is cut by one tube after the other, different ones at the same time.
+  void cut_voids() {
+    std::vector<char> is_cut(2 * cuts_.size(), 1);
+    tbb::parallel_for(std::size_t{0}, voids_.size(), [&](std::size_t v) {
+      for (std::size_t i = 0; i < cuts_.size(); ++i) {
+        PlannedCut& planned = cuts_[i];
+        if (!planned.is_made) continue;
+        if (planned.from == v) is_cut[2 * i] = cut_void(v, planned.prisms.inward, planned.inward) ? 1 : 0;
+        if (planned.to == v) is_cut[2 * i + 1] = cut_void(v, planned.prisms.onward, planned.onward) ? 1 : 0;
+      }
+    });
+    for (std::size_t i = 0; i < cuts_.size(); ++i)
+      cuts_[i].is_made = cuts_[i].is_made && is_cut[2 * i] != 0 && is_cut[2 * i + 1] != 0;
+  }
+
+  bool cut_void(std::size_t v, const CuttingPrism& prism, CutEnd& end) {
+    CutMesh& target = voids_[v];
+    std::vector<std::uint32_t> near = triangles_near(target.mesh, axis_of(prism), reach_of(prism));
+    std::erase_if(near, [&](std::uint32_t i) { return i >= target.own_triangle_count; });
+    return cut(target, near, prism, end);
+  }
+
+  Solid put_together() {
+    Solid solid;
+    Mesh& mesh = solid.mesh;
+    mesh.positions = outer_.mesh.positions;
+    const auto add_part = [&](const CutMesh& source, std::size_t first, std::size_t last, std::uint32_t base,
+                              PartKind kind) {
+      for (std::size_t i = first; i < last; ++i) {
+        const Triangle& t = source.mesh.triangles[i];
+        if (source.is_gone[i] == 0) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+      }
+      solid.close_part(kind);
+    };
+    add_part(outer_, 0, outer_.own_triangle_count, 0, PartKind::outer);
+    add_part(outer_, outer_.own_triangle_count, outer_.mesh.triangles.size(), 0, PartKind::remnant);
+    std::vector<std::uint32_t> bases;
+    for (const CutMesh& piece : voids_) {
+      bases.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.insert(mesh.positions.end(), piece.mesh.positions.begin(), piece.mesh.positions.end());
+      // Both kinds of triangles are one part.
+      for (std::size_t i = 0; i < piece.mesh.triangles.size(); ++i) {
+        const Triangle& t = piece.mesh.triangles[i];
+        if (piece.is_gone[i] == 0)
+          mesh.triangles.push_back({t[0] + bases.back(), t[1] + bases.back(), t[2] + bases.back()});
+      }
+      solid.close_part(PartKind::void_surface);
+    }
+    for (std::size_t i = 0; i < cuts_.size(); ++i) {
+      const PlannedCut& planned = cuts_[i];
+      const std::vector<Vec3f>& ring = planned.prisms.onward.ring;
+      const auto ring_base = static_cast<std::uint32_t>(mesh.positions.size());
+      const auto sides = static_cast<std::uint32_t>(ring.size());
+      mesh.positions.insert(mesh.positions.end(), ring.begin(), ring.end());
+      add_sides(solid, planned.inward, bases[planned.from],
+                [&](std::uint32_t v) { return ring_base + sides - 1 - v; });
+      add_sides(solid, planned.onward, planned.to ? bases[*planned.to] : 0,
+                [&](std::uint32_t v) { return ring_base + v; });
+      solid.close_part(planned.to ? PartKind::channel : PartKind::hole);
+    }
+    drop_unused_vertices(mesh);
+    return solid;
+  }
+
+  template <typename OfRing>
+  static void add_sides(Solid& solid, const CutEnd& end, std::uint32_t base, const OfRing& of_ring) {
+    for (Triangle t : end.sides) {
+      for (std::uint32_t& v : t) v = v >= end.ring_base ? of_ring(v - end.ring_base) : v + base;
+      solid.mesh.triangles.push_back(t);
+    }
+  }
+
+  const DrainagePlan& plan_;
+  CutMesh outer_;
+  std::vector<CutMesh> voids_;
+  std::vector<PlannedCut> cuts_;
+};
+
+}  // namespace
+
+bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const CellVoid& from, const Tube& hole,
+                double tolerance) {
+  const Vec3d beyond = direction_of(hole) * (kCutBeyond * hole.radius);
+  const std::vector<std::uint32_t> near =
+      surface.triangles_near({hole.start, hole.end + beyond}, hole.radius + kBeyond);
+  const auto prisms = prisms_of_hole(outer, near, from.surface, hole, tolerance);
+  if (!prisms) return false;
+  const CuttingPrism &inward = prisms->inward, &onward = prisms->onward;
+  return may_be_cut(outer, surface.triangles_near(axis_of(onward), reach_of(onward)), onward) &&
+         may_be_cut(from.surface, triangles_near(from.surface, axis_of(inward), reach_of(inward)), inward);
+}
+
+std::variant<Solid, UncutTubes> carve_drained_cells(const Mesh& outer, const SurfaceIndex& surface,
+                                                    const CellVoids& cells, const DrainagePlan& plan,
+                                                    double tolerance, Monitor& monitor) {
+  return Carver(outer, surface, cells, plan, tolerance).carve(monitor);
+}
+
+}  // namespace aerate

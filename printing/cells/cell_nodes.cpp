@@ -1,0 +1,153 @@
+#include "printing/cells/cell_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+namespace aerate {
+namespace {
+
+constexpr double kRootOf3 = 1.7320508075688772;
+
+// Nodes along the side of the blocks that are looked at first.
+constexpr std::int32_t kBlock = 16;
+
+constexpr float kFar = 1e9F;
+
+// What was found at the middle of a block, for the blocks in it.
+struct Known {
+  std::uint32_t facet = kNone;
+  Vec3d middle{0, 0, 0};
+  double distance = -1;    // of the surface from there: no part of it is nearer
+  bool is_inside = false;  // there, and as far as `distance` reaches
+  bool is_deep = false;    // the surface limits nothing in the block
+};
+
+class Filler {
+ public:
+  Filler(const CellRegion& region, CellNodes& nodes) : region_(region), nodes_(nodes) {}
+
+  void fill() {
+    const NodeBox& box = nodes_.box;
+    for (std::int32_t k = 0; k < box.count_z; k += kBlock) {
+      for (std::int32_t j = 0; j < box.count_y; j += kBlock) {
+        for (std::int32_t i = 0; i < box.count_x; i += kBlock) fill(i, j, k, kBlock, {});
+      }
+    }
+  }
+
+ private:
+  void fill(std::int32_t i, std::int32_t j, std::int32_t k, std::int32_t side, Known known) {
+    const NodeBox& box = nodes_.box;
+    if (i >= box.count_x || j >= box.count_y || k >= box.count_z) return;
+    const double half = (side - 1) * 0.5;
+    const Vec3d middle = box.at(i + half, j + half, k + half);
+    const double reach = half * box.lattice.spacing * kRootOf3;
+    const double behind = region_.behind_planes(middle);
+    if (behind + reach < nodes_.ball_radius) return;
+    // Placing vertices asks whether the surface is near some nodes beyond what limits the balls.
+    const double most = nodes_.deepest + 1.5 * box.lattice.spacing;
+    double below = kFar;
+    if (!known.is_deep) {
+      const SurfaceNearby near = region_.surface_near(middle, region_.wall() + most + reach, known.facet);
+      const bool is_told = length(middle - known.middle) < known.distance;
+      const bool is_inside = is_told ? known.is_inside : region_.is_inside(middle);
+      below = near.distance - region_.wall();
+      if (is_inside ? below + reach < nodes_.ball_radius : near.distance >= reach || side == 1) return;
+      known = {near.facet, middle, near.distance, is_inside, near.facet == kNone && is_inside};
+    }
+    if (side == 1) {
+      const double depth = std::min(behind, below);
+      if (depth < nodes_.ball_radius) return;
+      set(i, j, k, std::min(depth, nodes_.deepest), known.is_deep ? kFar : static_cast<float>(below),
+          known.facet);
+      return;
+    }
+    if (known.is_deep && behind - reach >= nodes_.deepest) {
+      for (std::int32_t z = k; z < std::min(k + side, box.count_z); ++z) {
+        for (std::int32_t y = j; y < std::min(j + side, box.count_y); ++y) {
+          for (std::int32_t x = i; x < std::min(i + side, box.count_x); ++x)
+            set(x, y, z, nodes_.deepest, kFar, kNone);
+        }
+      }
+      return;
+    }
+    const std::int32_t half_side = side / 2;
+    for (std::int32_t part = 0; part < 8; ++part)
+      fill(i + (part & 1) * half_side, j + (part >> 1 & 1) * half_side, k + (part >> 2) * half_side,
+           half_side, known);
+  }
+
+  void set(std::int32_t i, std::int32_t j, std::int32_t k, double depth, float below, std::uint32_t facet) {
+    const std::size_t node = nodes_.box.index(i, j, k);
+    nodes_.depth[node] = static_cast<float>(depth);
+    nodes_.surface_depth[node] = below;
+    nodes_.facet[node] = facet;
+  }
+
+  const CellRegion& region_;
+  CellNodes& nodes_;
+};
+
+// Of the points round which a ball fits: by blocks, so at least this.
+std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within, double ball_radius,
+                                  double side) {
+  const double reach = side / 2 * kRootOf3;
+  const Vec3d half{side / 2, side / 2, side / 2};
+  Box3d box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (double z = within.lower.z + half.z; z < within.upper.z + half.z; z += side) {
+    for (double y = within.lower.y + half.y; y < within.upper.y + half.y; y += side) {
+      for (double x = within.lower.x + half.x; x < within.upper.x + half.x; x += side) {
+        const Vec3d middle{x, y, z};
+        if (region.behind_planes(middle) + reach < ball_radius) continue;
+        const double needed = region.wall() + ball_radius;
+        const SurfaceNearby near = region.surface_near(middle, needed + reach, kNone);
+        // Where the surface is not near, the middle tells for the block.
+        if (near.distance >= reach) {
+          if (!region.is_inside(middle) || near.distance + reach < needed) continue;
+        }
+        box = {min_of(box.lower, middle - half), max_of(box.upper, middle + half)};
+      }
+    }
+  }
+  if (!(box.lower.x < box.upper.x)) return std::nullopt;
+  return box;
+}
+
+}  // namespace
+
+CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
+                        const NodeLattice& lattice) {
+  constexpr double kBlocksPerCell = 6;
+  constexpr std::size_t kMostNodes = std::size_t{1} << 28;
+  const double spacing = lattice.spacing;
+  CellNodes nodes;
+  nodes.ball_radius = ball_radius;
+  nodes.deepest = ball_radius + kRootOf3 * spacing;
+  nodes.box.lattice = lattice;
+  const auto balls = box_of_balls(region, within, ball_radius, kBlocksPerCell * spacing);
+  if (!balls) return nodes;
+  const double margin = nodes.deepest + 2 * spacing;
+  const auto first = [&](double coordinate, double origin) {
+    return static_cast<std::int32_t>(std::floor((coordinate - margin - origin) / spacing));
+  };
+  const auto count = [&](double coordinate, double origin, std::int32_t from) {
+    return static_cast<std::int32_t>(std::ceil((coordinate + margin - origin) / spacing)) - from + 1;
+  };
+  NodeBox& box = nodes.box;
+  box.x = first(balls->lower.x, lattice.origin.x);
+  box.y = first(balls->lower.y, lattice.origin.y);
+  box.z = first(balls->lower.z, lattice.origin.z);
+  box.count_x = count(balls->upper.x, lattice.origin.x, box.x);
+  box.count_y = count(balls->upper.y, lattice.origin.y, box.y);
+  box.count_z = count(balls->upper.z, lattice.origin.z, box.z);
+  if (box.size() > kMostNodes) throw std::length_error("a cell has more than 2^28 lattice nodes");
+  nodes.depth.assign(box.size(), -1.F);
+  nodes.surface_depth.assign(box.size(), kFar);
+  nodes.facet.assign(box.size(), kNone);
+  Filler(region, nodes).fill();
+  return nodes;
+}
+
+}  // namespace aerate

@@ -1,0 +1,240 @@
+#include "printing/cells/rolled_balls.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "printing/cells/nearest_in_halfspaces.h"
+
+namespace aerate {
+namespace {
+
+constexpr float kUncovered = -1e9F;
+
+// A node counts as covered if it is so deep in a ball, in spacings.
+constexpr float kLeastCover = 1e-3F;
+
+// Nodes of one line along an axis within a distance of a coordinate.
+struct NodeRange {
+  std::int32_t first, last;
+
+  NodeRange(double middle, double reach, double origin, double spacing, std::int32_t count)
+      : first(std::max(0, static_cast<std::int32_t>(std::ceil((middle - reach - origin) / spacing)))),
+        last(std::min(count - 1,
+                      static_cast<std::int32_t>(std::floor((middle + reach - origin) / spacing)))) {}
+};
+
+double square(double x) {
+  return x * x;
+}
+
+class Roller {
+ public:
+  Roller(const CellRegion& region, const CellNodes& nodes, OpenedCell& opened)
+      : region_(region), nodes_(nodes), opened_(opened) {}
+
+  void roll(const Sphere& own) {
+    const NodeBox& box = nodes_.box;
+    for (std::int32_t k = 0; k < box.count_z; ++k) {
+      for (std::int32_t j = 0; j < box.count_y; ++j) {
+        for (std::int32_t i = 0; i < box.count_x; ++i) {
+          const std::size_t node = box.index(i, j, k);
+          if (!nodes_.is_outermost(node)) continue;
+          const Vec3d at = box.at(i, j, k);
+          add({at, static_cast<double>(nodes_.depth[node]), nodes_.facet[node], is_near_surface(node)});
+          add_in_edge(node, at);
+        }
+      }
+    }
+    if (own.radius >= nodes_.ball_radius) add({own.centre, own.radius, kNone, true});
+  }
+
+ private:
+  bool is_near_surface(std::size_t node) const {
+    // The vertices that it places may be looked for this far from the node.
+    constexpr double kReach = 1.3;
+    return nodes_.surface_depth[node] <
+           nodes_.depth[node] + static_cast<float>(kReach * nodes_.box.lattice.spacing);
+  }
+
+  // Where two or more of what bounds the region are near, a ball in the edge or corner between them.
+  void add_in_edge(std::size_t node, Vec3d at) {
+    constexpr double kBeyond = 1.5, kFarthest = 2.5, kLeastRadius = 0.9;
+    const double spacing = nodes_.box.lattice.spacing, radius = nodes_.ball_radius;
+    Halfspaces bounds;
+    Vec3d outward{0, 0, 0};
+    int near = 0;
+    for (const CellPlane& plane : region_.planes()) {
+      const double depth = plane.offset - dot(plane.normal, at);
+      if (depth >= nodes_.deepest + spacing) continue;
+      bounds.add(plane.normal, plane.offset - radius);
+      if (depth >= nodes_.deepest) continue;
+      outward = outward + plane.normal;
+      ++near;
+    }
+    const std::uint32_t facet = nodes_.facet[node];
+    const double below = nodes_.surface_depth[node];
+    if (facet != kNone && below < nodes_.deepest + spacing) {
+      const Vec3d foot = region_.nearest_on(facet, at);
+      const Vec3d away = normalised(at - foot);
+      bounds.add(-away, -(dot(away, foot) + region_.wall() + radius));
+      if (below < nodes_.deepest) {
+        outward = outward - away;
+        ++near;
+      }
+    }
+    if (near < 2) return;
+    const Vec3d edge = bounds.nearest_to(at + outward * (kBeyond * spacing));
+    if (length(edge - at) > kFarthest * spacing) return;
+    double depth = region_.behind_planes(edge);
+    const bool asks_surface = below < nodes_.deepest + kFarthest * spacing;
+    if (asks_surface) {
+      const SurfaceNearby surface = region_.surface_near(edge, region_.wall() + 2 * radius, facet);
+      depth = std::min(depth, surface.distance - region_.wall());
+    }
+    if (depth >= kLeastRadius * radius) add({edge, depth, facet, asks_surface});
+  }
+
+  void add(const RolledBall& ball) {
+    const NodeBox& box = nodes_.box;
+    const double spacing = box.lattice.spacing;
+    const auto number = static_cast<std::uint32_t>(opened_.balls.size());
+    opened_.balls.push_back(ball);
+    // Nodes just outside tell where the surface passes.
+    const double reach = ball.radius + 1.2 * spacing;
+    const Vec3d origin = box.at(0, 0, 0);
+    const NodeRange layers(ball.centre.z, reach, origin.z, spacing, box.count_z);
+    for (std::int32_t k = layers.first; k <= layers.last; ++k) {
+      const double dz = square(origin.z + spacing * k - ball.centre.z);
+      const double reach_y = std::sqrt(std::max(0.0, reach * reach - dz));
+      const NodeRange rows(ball.centre.y, reach_y, origin.y, spacing, box.count_y);
+      for (std::int32_t j = rows.first; j <= rows.last; ++j) {
+        const double dyz = dz + square(origin.y + spacing * j - ball.centre.y);
+        const double reach_x = std::sqrt(std::max(0.0, reach * reach - dyz));
+        const NodeRange row(ball.centre.x, reach_x, origin.x, spacing, box.count_x);
+        const std::size_t first = box.index(0, j, k);
+        for (std::int32_t i = row.first; i <= row.last; ++i) {
+          const std::size_t node = first + static_cast<std::size_t>(i);
+          if (nodes_.has_ball(node)) continue;
+          const auto cover = static_cast<float>(
+              ball.radius - std::sqrt(dyz + square(origin.x + spacing * i - ball.centre.x)));
+          if (cover <= opened_.cover[node]) continue;
+          opened_.cover[node] = cover;
+          opened_.ball[node] = number;
+        }
+      }
+    }
+  }
+
+  const CellRegion& region_;
+  const CellNodes& nodes_;
+  OpenedCell& opened_;
+};
+
+// Which of the 256 sets of corners of a cube are well-composed: neither they nor the others meet diagonally.
+std::array<bool, 256> make_well_composed() {
+  const auto hangs_together = [](unsigned corners) {
+    if (corners == 0) return true;
+    unsigned seen = corners & (~corners + 1);
+    for (bool grows = true; grows;) {
+      grows = false;
+      for (unsigned corner = 0; corner < 8; ++corner) {
+        if ((corners >> corner & 1U) == 0 || (seen >> corner & 1U) != 0) continue;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+          if ((seen >> (corner ^ (1U << axis)) & 1U) == 0) continue;
+          seen |= 1U << corner;
+          grows = true;
+        }
+      }
+    }
+    return seen == corners;
+  };
+  const auto has_diagonal_face = [](unsigned corners) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const unsigned u = 1U << (axis + 1) % 3, v = 1U << (axis + 2) % 3;
+      for (unsigned base = 0; base < 2; ++base) {
+        const auto has = [&](unsigned corner) { return (corners >> (base << axis | corner) & 1U) != 0; };
+        if (has(0) == has(u | v) && has(u) == has(v) && has(0) != has(u)) return true;
+      }
+    }
+    return false;
+  };
+  std::array<bool, 256> result{};
+  for (unsigned corners = 0; corners < 256; ++corners)
+    result[corners] =
+        hangs_together(corners) && hangs_together(~corners & 255U) && !has_diagonal_face(corners);
+  return result;
+}
+
+// Takes nodes out of the void until every cube is well-composed; those with a ball of their own stay, since
+// what surrounds them is covered.
+void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_void) {
+  static const std::array<bool, 256> kWellComposed = make_well_composed();
+  const NodeBox& box = nodes.box;
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (std::int32_t k = 0; k + 1 < box.count_z; ++k) {
+      for (std::int32_t j = 0; j + 1 < box.count_y; ++j) {
+        for (std::int32_t i = 0; i + 1 < box.count_x; ++i) {
+          const std::array<std::size_t, 8> corners = cube_at(box, i, j, k);
+          unsigned set = 0;
+          for (unsigned corner = 0; corner < 8; ++corner)
+            set |= (is_void[corners[corner]] != 0 ? 1U : 0U) << corner;
+          if (kWellComposed[set]) continue;
+          for (const std::size_t node : corners) {
+            if (is_void[node] == 0 || nodes.has_ball(node)) continue;
+            is_void[node] = 0;
+            changes = true;
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own) {
+  OpenedCell opened;
+  opened.cover.assign(nodes.box.size(), kUncovered);
+  opened.ball.assign(nodes.box.size(), kNone);
+  Roller(region, nodes, opened).roll(own);
+  const auto least = kLeastCover * static_cast<float>(nodes.box.lattice.spacing);
+  opened.is_void.resize(nodes.box.size());
+  for (std::size_t node = 0; node < nodes.box.size(); ++node)
+    opened.is_void[node] = nodes.has_ball(node) || opened.cover[node] > least ? 1 : 0;
+  make_well_composed(nodes, opened.is_void);
+  return opened;
+}
+
+std::vector<NodePiece> find_pieces(const NodeBox& box, const std::vector<std::uint8_t>& is_void,
+                                   std::vector<std::int32_t>& labels) {
+  labels.assign(box.size(), -1);
+  std::vector<NodePiece> pieces;
+  std::vector<std::size_t> pending;
+  const std::array<std::size_t, 3> steps{1, box.step_y(), box.step_z()};
+  for (std::size_t start = 0; start < box.size(); ++start) {
+    if (is_void[start] == 0 || labels[start] >= 0) continue;
+    NodePiece piece{static_cast<std::int32_t>(pieces.size()), 0};
+    labels[start] = piece.label;
+    pending.push_back(start);
+    while (!pending.empty()) {
+      const std::size_t node = pending.back();
+      pending.pop_back();
+      ++piece.size;
+      for (const std::size_t step : steps) {
+        for (const std::size_t next : {node - step, node + step}) {
+          if (is_void[next] == 0 || labels[next] >= 0) continue;
+          labels[next] = piece.label;
+          pending.push_back(next);
+        }
+      }
+    }
+    pieces.push_back(piece);
+  }
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const NodePiece& a, const NodePiece& b) { return a.size > b.size; });
+  return pieces;
+}
+
+}  // namespace aerate

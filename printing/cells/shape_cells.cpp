@@ -1,0 +1,306 @@
+#include "printing/cells/shape_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <fmt/format.h>
+#include <iterator>
+#include <numeric>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "printing/cells/cell_nodes.h"
+#include "printing/cells/decimate.h"
+#include "printing/cells/keep_wall.h"
+#include "printing/cells/piece_surface.h"
+#include "printing/cells/rolled_balls.h"
+
+namespace aerate {
+namespace {
+
+// Slicers drop smaller shells, mm3 (docs/processes.md).
+constexpr double kLeastVolume = 1;
+
+// Cells between two questions to the monitor.
+constexpr std::size_t kCellsPerPiece = 64;
+
+// Of the tolerance, for taking out triangles; the rest is for the bend of the surface between nodes.
+constexpr double kShareForDecimation = 0.55;
+
+double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Triangle>& triangles) {
+  if (vertices.empty()) return 0;
+  const Vec3d origin = vertices.front().at;
+  double sum = 0;
+  for (const Triangle& t : triangles)
+    sum += dot(vertices[t[0]].at - origin, cross(vertices[t[1]].at - origin, vertices[t[2]].at - origin));
+  return std::abs(sum) / 6;
+}
+
+class CellShaper {
+ public:
+  CellShaper(const SurfaceIndex& surface, const Packing& packing, const CellShape& shape,
+             const NodeLattice& lattice, double margin)
+      : surface_(surface), packing_(packing), shape_(shape), lattice_(lattice), margin_(margin) {}
+
+  // `solid`: places about which nothing is taken out.
+  std::vector<CellVoid> shape(std::uint32_t cell, std::span<const CellPlane> planes, const Box3d& box,
+                              std::span<const Vec3d> solid) const {
+    const CellRegion region(planes, surface_, packing_.limits.wall);
+    CellNodes nodes = look_at_nodes(region, box, shape_.fillet, lattice_);
+    for (const Vec3d place : solid) keep_solid_about(nodes, place);
+    std::vector<CellVoid> voids;
+    std::vector<std::int32_t> labels;
+    while (nodes.box.size() > 0) {
+      const OpenedCell opened = open_cell(region, nodes, packing_.spheres[cell]);
+      const std::vector<NodePiece> pieces = find_pieces(nodes.box, opened.is_void, labels);
+      const auto is_worth_it = [&](const NodePiece& piece) {
+        return volume_of_nodes(piece.size) >= kLeastVolume &&
+               takes_least_ball(region, nodes, labels, piece.label, packing_.spheres[cell]);
+      };
+      const auto piece = std::ranges::find_if(pieces, is_worth_it);
+      if (piece == pieces.end()) break;
+      voids.push_back(make(cell, region, nodes, opened, labels, piece->label));
+      if (std::none_of(std::next(piece), pieces.end(), [](const NodePiece& other) { return other.size > 8; }))
+        break;
+      keep_away_from(nodes, labels, piece->label);
+    }
+    return voids;
+  }
+
+ private:
+  double volume_of_nodes(std::size_t count) const {
+    return static_cast<double>(count) * lattice_.spacing * lattice_.spacing * lattice_.spacing;
+  }
+
+  bool takes_least_ball(const CellRegion& region, const CellNodes& nodes,
+                        const std::vector<std::int32_t>& labels, std::int32_t piece,
+                        const Sphere& own) const {
+    const NodeBox& box = nodes.box;
+    const double least = packing_.limits.min_radius;
+    for (std::int32_t k = 0; k < box.count_z; ++k) {
+      for (std::int32_t j = 0; j < box.count_y; ++j) {
+        for (std::int32_t i = 0; i < box.count_x; ++i) {
+          const std::size_t node = box.index(i, j, k);
+          if (labels[node] != piece || !nodes.has_ball(node)) continue;
+          const Vec3d at = box.at(i, j, k);
+          // About its own sphere's centre a ball fits that is at least as large as the least.
+          if (length(at - own.centre) < lattice_.spacing) return true;
+          if (region.behind_planes(at) < least) continue;
+          const double needed = region.wall() + least;
+          if (region.surface_near(at, needed, nodes.facet[node]).distance >= needed) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  CellVoid make(std::uint32_t cell, const CellRegion& region, const CellNodes& nodes,
+                const OpenedCell& opened, const std::vector<std::int32_t>& labels, std::int32_t piece) const {
+    const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
+    const PieceSurface dense = surface_of_piece(nodes.box, opened, nodes, labels, piece, placer);
+    CellVoid result;
+    result.cell = cell;
+    result.euler = dense.euler;
+    result.planned_volume = volume_of(dense.vertices, dense.triangles);
+    result.nodes = runs_of_piece(nodes.box, labels, piece);
+    // What decimation bounds is not all: vertices are moved afterwards. So what comes of it is measured.
+    double allowed = kShareForDecimation * shape_.tolerance;
+    constexpr int kMostTries = 5;
+    for (int i = 1; i <= kMostTries; ++i) {
+      result.surface = thinned(region, dense, i < kMostTries ? allowed : 0);
+      result.deviation = deviation(dense, result.surface);
+      if (result.deviation <= shape_.tolerance) break;
+      allowed *= std::clamp(0.85 * shape_.tolerance / result.deviation, 0.3, 0.85);
+    }
+    return result;
+  }
+
+  static Mesh thinned(const CellRegion& region, const PieceSurface& dense, double allowed) {
+    std::vector<Vec3d> positions;
+    positions.reserve(dense.vertices.size());
+    for (const PlacedVertex& vertex : dense.vertices) positions.push_back(vertex.at);
+    const Decimated fewer = decimate(positions, dense.triangles, allowed);
+    std::vector<PlacedVertex> vertices;
+    vertices.reserve(fewer.vertices.size());
+    for (const std::uint32_t v : fewer.vertices) vertices.push_back(dense.vertices[v]);
+    keep_wall(region, vertices, fewer.triangles);
+    Mesh mesh;
+    for (const PlacedVertex& vertex : vertices) mesh.positions.push_back(to_float(vertex.at));
+    mesh.triangles = fewer.triangles;
+    return mesh;
+  }
+
+  static double deviation(const PieceSurface& dense, const Mesh& surface) {
+    const kernels::HostTriangleBvh bvh(surface.positions, surface.triangles);
+    double most = 0;
+    for (const PlacedVertex& vertex : dense.vertices)
+      most = std::max(most, bvh.view().nearest(vertex.at, kInfinity).distance_squared);
+    return std::sqrt(most);
+  }
+
+  void keep_solid_about(CellNodes& nodes, Vec3d place) const {
+    constexpr double kSpacings = 2;
+    const NodeBox& box = nodes.box;
+    for (std::int32_t k = 0; k < box.count_z; ++k) {
+      for (std::int32_t j = 0; j < box.count_y; ++j) {
+        for (std::int32_t i = 0; i < box.count_x; ++i) {
+          const double away = length(box.at(i, j, k) - place) - kSpacings * lattice_.spacing;
+          limit(nodes, box.index(i, j, k), away);
+        }
+      }
+    }
+  }
+
+  // No more depth at a node than this.
+  static void limit(CellNodes& nodes, std::size_t node, double depth) {
+    if (!nodes.has_ball(node) || depth >= static_cast<double>(nodes.depth[node])) return;
+    nodes.depth[node] = depth < nodes.ball_radius ? -1.F : static_cast<float>(depth);
+  }
+
+  // What is left of the cell: without a piece, and no nearer to it than the gap.
+  void keep_away_from(CellNodes& nodes, const std::vector<std::int32_t>& labels, std::int32_t piece) const {
+    const NodeBox& box = nodes.box;
+    // Nodes tell to within a spacing where surfaces are.
+    const double kept = packing_.limits.gap + lattice_.spacing;
+    const double reach = kept + nodes.deepest;
+    const auto steps = static_cast<std::int32_t>(reach / lattice_.spacing);
+    std::vector<float> allowed(box.size(), static_cast<float>(nodes.deepest));
+    for (std::int32_t k = 0; k < box.count_z; ++k) {
+      for (std::int32_t j = 0; j < box.count_y; ++j) {
+        for (std::int32_t i = 0; i < box.count_x; ++i) {
+          const std::size_t node = box.index(i, j, k);
+          if (labels[node] != piece) continue;
+          allowed[node] = -1;
+          if (is_surrounded(box, labels, node, piece)) continue;
+          for (std::int32_t z = std::max(0, k - steps); z <= std::min(box.count_z - 1, k + steps); ++z) {
+            for (std::int32_t y = std::max(0, j - steps); y <= std::min(box.count_y - 1, j + steps); ++y) {
+              for (std::int32_t x = std::max(0, i - steps); x <= std::min(box.count_x - 1, i + steps); ++x) {
+                const std::size_t other = box.index(x, y, z);
+                if (!nodes.has_ball(other)) continue;
+                const double apart = lattice_.spacing * std::hypot(x - i, y - j, z - k);
+                allowed[other] = std::min(allowed[other], static_cast<float>(apart - kept));
+              }
+            }
+          }
+        }
+      }
+    }
+    for (std::size_t node = 0; node < box.size(); ++node)
+      limit(nodes, node, static_cast<double>(allowed[node]));
+  }
+
+  static bool is_surrounded(const NodeBox& box, const std::vector<std::int32_t>& labels, std::size_t node,
+                            std::int32_t piece) {
+    for (const std::size_t step : {std::size_t{1}, box.step_y(), box.step_z()}) {
+      if (labels[node - step] != piece || labels[node + step] != piece) return false;
+    }
+    return true;
+  }
+
+  const SurfaceIndex& surface_;
+  const Packing& packing_;
+  const CellShape& shape_;
+  const NodeLattice& lattice_;
+  double margin_;
+};
+
+// The voids of some cells, in their order.
+std::vector<CellVoid> shape_some(const SurfaceIndex& surface, const Packing& packing, const CellVoids& cells,
+                                 const CellShape& shape, std::span<const std::uint32_t> some,
+                                 std::span<const CellPlace> solid, Monitor& monitor) {
+  double largest = 0;
+  for (const Box3d& box : cells.planes.boxes) {
+    for (const Vec3d p : {box.lower, box.upper})
+      largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  // Twice what rounding to fp32 moves a vertex by at most.
+  const double margin = std::ldexp(largest, -22) + 1e-6;
+  if (margin > shape.tolerance / 4)
+    throw UsageError(
+        fmt::format("cells at coordinates up to {:g} mm cannot be kept within a tolerance of {:g} mm: "
+                    "coordinates in a mesh file are single precision",
+                    largest, shape.tolerance),
+        "move the model nearer to the origin, or raise --tolerance");
+  const CellShaper shaper(surface, packing, shape, cells.lattice, margin);
+  std::vector<std::vector<CellVoid>> made(some.size());
+  std::vector<char> is_too_large(some.size(), 0);
+  for (std::size_t first = 0; first < some.size(); first += kCellsPerPiece) {
+    monitor.check_interrupted();
+    tbb::parallel_for(first, std::min(some.size(), first + kCellsPerPiece), [&](std::size_t i) {
+      const std::uint32_t cell = some[i];
+      std::vector<Vec3d> solid_here;
+      for (const CellPlace& place : solid)
+        if (place.cell == cell) solid_here.push_back(place.at);
+      try {
+        made[i] = shaper.shape(cell, cells.planes.of(cell), cells.planes.boxes[cell], solid_here);
+      } catch (const std::length_error&) {
+        is_too_large[i] = 1;
+      }
+    });
+  }
+  if (std::ranges::find(is_too_large, 1) != is_too_large.end())
+    throw UsageError(fmt::format("a cell is too large for a fillet of {:g} mm and a tolerance of {:g} mm",
+                                 shape.fillet, shape.tolerance),
+                     "give a larger --fillet or --tolerance, or a smaller --max-radius");
+  std::vector<CellVoid> voids;
+  for (std::vector<CellVoid>& of_cell : made) std::ranges::move(of_cell, std::back_inserter(voids));
+  return voids;
+}
+
+}  // namespace
+
+double node_spacing(const CellShape& shape, const PackingLimits& limits) {
+  // Between nodes the surface bends by spacing^2 / (8 radius) or less, along the diagonals of squares more.
+  constexpr double kShareForBend = 0.5, kAcrossSquares = 1.3, kLeastNodesPerRadius = 2.2;
+  const double bend = std::min(shape.fillet, std::max(limits.wall, shape.fillet / 2));
+  const double spacing = std::sqrt(8 * bend * kShareForBend * shape.tolerance) / kAcrossSquares;
+  return std::min(spacing, shape.fillet / kLeastNodesPerRadius);
+}
+
+CellVoids shape_cells(const SurfaceIndex& surface, const Packing& packing, CellPlanes planes,
+                      const CellShape& shape, Monitor& monitor) {
+  CellVoids cells;
+  cells.planes = std::move(planes);
+  cells.ball_radius = shape.fillet;
+  cells.lattice.spacing = node_spacing(shape, packing.limits);
+  // Off whole multiples, where faces of models often are.
+  cells.lattice.origin = Vec3d{0.31, 0.37, 0.41} * cells.lattice.spacing;
+  std::vector<std::uint32_t> all(packing.spheres.size());
+  std::iota(all.begin(), all.end(), 0U);
+  cells.voids = shape_some(surface, packing, cells, shape, all, {}, monitor);
+  return cells;
+}
+
+CellVoids shape_around(const SurfaceIndex& surface, const Packing& packing, CellVoids cells,
+                       const CellShape& shape, std::span<const CellPlace> places, Monitor& monitor) {
+  std::vector<std::uint32_t> anew;
+  for (const CellPlace& place : places) anew.push_back(place.cell);
+  std::ranges::sort(anew);
+  anew.erase(std::unique(anew.begin(), anew.end()), anew.end());
+  std::vector<CellVoid> made = shape_some(surface, packing, cells, shape, anew, places, monitor);
+  std::erase_if(cells.voids,
+                [&](const CellVoid& piece) { return std::ranges::binary_search(anew, piece.cell); });
+  std::ranges::move(made, std::back_inserter(cells.voids));
+  std::ranges::stable_sort(cells.voids, {}, &CellVoid::cell);
+  return cells;
+}
+
+Solid carve_cells(Mesh outer, const CellVoids& cells) {
+  Solid solid;
+  solid.mesh = std::move(outer);
+  solid.close_part(PartKind::outer);
+  for (const CellVoid& piece : cells.voids) {
+    const auto first = static_cast<std::uint32_t>(solid.mesh.positions.size());
+    solid.mesh.positions.insert(solid.mesh.positions.end(), piece.surface.positions.begin(),
+                                piece.surface.positions.end());
+    for (const Triangle& t : piece.surface.triangles)
+      solid.mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    solid.close_part(PartKind::void_surface);
+  }
+  return solid;
+}
+
+}  // namespace aerate

@@ -1,0 +1,228 @@
+#include "packing/cell_drainage_holes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <queue>
+#include <tbb/parallel_for.h>
+#include <utility>
+
+#include "core/error.h"
+#include "kernels/constants.h"
+
+namespace aerate {
+namespace {
+
+constexpr int kDirections = 64;
+
+// Weights of what makes a place good, as in HolePlaces.
+constexpr double kShowingWeight = 0.1;
+constexpr double kLengthWeight = 0.2;
+constexpr double kLeastShowing = 0.139;  // of places that face down and backwards
+
+// Nodes from which ways are looked for at once.
+constexpr std::size_t kAtOnce = 32;
+
+// Of the nodes that holes which were asked for may start from, so many of each void are looked at.
+constexpr std::size_t kMostStarts = 256;
+
+// Points spread evenly over the half of the unit sphere about `axis`, which is the first of them.
+std::vector<Vec3d> directions_about(Vec3d axis) {
+  const TubeFrame frame = frame_of({{0, 0, 0}, axis, 1}, {0, 0, 1});
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Vec3d> directions{axis};
+  for (int i = 0; i < kDirections; ++i) {
+    const double along = 1 - (i + 0.5) / kDirections;
+    const double across = std::sqrt(1 - along * along);
+    directions.push_back(axis * along +
+                         (frame.down * std::cos(golden * i) + frame.across * std::sin(golden * i)) * across);
+  }
+  // Level ones, for tubes out of the side of a void.
+  constexpr int kLevel = 24;
+  for (int i = 0; i < kLevel; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kLevel;
+    directions.push_back(frame.down * std::cos(angle) + frame.across * std::sin(angle));
+  }
+  return directions;
+}
+
+}  // namespace
+
+CellHolePlaces::CellHolePlaces(const CellVoids& cells, const std::vector<VoidHollows>& hollows,
+                               const PackingLimits& limits, double radius, const CellSurfaces& surfaces,
+                               const kernels::WindingView& outward)
+    : cells_(cells),
+      hollows_(hollows),
+      limits_(limits),
+      surfaces_(surfaces),
+      outward_(outward),
+      ways_out_(hollows, limits, radius, surfaces, outward) {
+  const Vec3d up = limits.roof.up;
+  directions_ = {directions_about(-up), directions_about(up)};
+  // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
+  if (limits.roof.limits_ceilings()) {
+    std::vector<Vec3d>& high = directions_[kUpsideDown];
+    high.insert(high.end(), directions_[kUpright].begin(), directions_[kUpright].end());
+  }
+}
+
+// From just above a node on the floor of a hollow, or from so high above it that a tube down has room.
+CellHolePlaces::Ways CellHolePlaces::ways_from(std::uint32_t from, std::uint32_t node,
+                                               std::size_t orientation) const {
+  const Vec3d up = orientation == kUpright ? limits_.roof.up : -limits_.roof.up;
+  const Vec3d at = hollows_[from].nodes().at(node);
+  const double ball = cells_.ball_radius, radius = ways_out_.radius();
+  Ways ways;
+  for (const Vec3d direction : directions_[orientation]) {
+    const double lowered = radius * lean_of(direction, up);
+    const bool leads_down = dot(direction, up) < -0.5;
+    for (const double above : {0.2 * ball + 0.1, std::max(ball, radius) + 0.1}) {
+      const auto way = ways_out_.follow(from, at + up * (lowered + above), direction);
+      if (way) ways.push_back(*way);
+      if (way || !leads_down) break;
+    }
+  }
+  return ways;
+}
+
+// The best way first. What those from a node cost at least is known before they are looked for.
+class CellHolePlaces::Ranking {
+ public:
+  Ranking(CellHolePlaces& places, std::size_t orientation, double height)
+      : places_(places),
+        up_(orientation == kUpright ? places.limits_.roof.up : -places.limits_.roof.up),
+        orientation_(orientation),
+        height_(height) {}
+
+  void push(std::uint32_t from, std::uint32_t node) {
+    const VoidNodes& nodes = places_.hollows_[from].nodes();
+    const Vec3d at = nodes.at(node);
+    const double reach = 2 * places_.ways_out_.longest();
+    if (places_.surfaces_.model().to_surface(at, reach) >= reach) return;
+    const double least = dot(at, up_) - nodes.lattice.spacing + kShowingWeight * height_ * kLeastShowing +
+                         kLengthWeight * places_.limits_.wall;
+    queue_.push({least, sequence_++, from, node, nullptr});
+  }
+
+  const CellWayOut* next() {
+    while (!queue_.empty()) {
+      if (queue_.top().way != nullptr) {
+        const CellWayOut* best = queue_.top().way;
+        queue_.pop();
+        return best;
+      }
+      look();
+    }
+    return nullptr;
+  }
+
+ private:
+  struct Entry {
+    double cost;
+    std::size_t sequence;
+    std::uint32_t from, node;
+    const CellWayOut* way;  // null: all those from the node
+    friend bool operator<(const Entry& a, const Entry& b) {
+      return std::tie(a.cost, a.sequence) > std::tie(b.cost, b.sequence);
+    }
+  };
+
+  // Looks for the ways from the next nodes.
+  void look() {
+    std::vector<Entry> nodes;
+    while (!queue_.empty() && queue_.top().way == nullptr && nodes.size() < kAtOnce) {
+      nodes.push_back(queue_.top());
+      queue_.pop();
+    }
+    std::vector<std::pair<Ways*, const Entry*>> unknown;
+    for (const Entry& entry : nodes) {
+      const auto [known, is_new] = places_.known_.try_emplace({orientation_, entry.from, entry.node});
+      if (is_new) unknown.emplace_back(&known->second, &entry);
+    }
+    tbb::parallel_for(std::size_t{0}, unknown.size(), [&](std::size_t i) {
+      const Entry& entry = *unknown[i].second;
+      *unknown[i].first = places_.ways_from(entry.from, entry.node, orientation_);
+    });
+    for (const Entry& entry : nodes) {
+      for (const CellWayOut& way : places_.known_[{orientation_, entry.from, entry.node}])
+        queue_.push({cost_of(way), sequence_++, entry.from, entry.node, &way});
+    }
+  }
+
+  double cost_of(const CellWayOut& way) const {
+    return places_.ways_out_.sill_of(way, orientation_) + kShowingWeight * height_ * way.showing +
+           kLengthWeight * way.length();
+  }
+
+  CellHolePlaces& places_;
+  Vec3d up_;
+  std::size_t orientation_;
+  double height_;
+  std::size_t sequence_ = 0;
+  std::priority_queue<Entry> queue_;
+};
+
+std::optional<CellHole> CellHolePlaces::best(std::span<const Basin::Part> hollows, std::size_t orientation,
+                                             double share, const Accept& accept) {
+  double lowest = kInfinity, highest = -kInfinity;
+  for (const Basin::Part& part : hollows) {
+    const VoidHollows& own = hollows_[part.in];
+    lowest = std::min(lowest, own.in(orientation).bottom[part.hollow]);
+    for (const double bottom : own.in(1 - orientation).bottom) highest = std::max(highest, -bottom);
+  }
+  const double height = highest - lowest;
+  Ranking ranking(*this, orientation, height);
+  for (const Basin::Part& part : hollows) {
+    const Hollows& own = hollows_[part.in].in(orientation);
+    if (own.bottom[part.hollow] > lowest + share * height) continue;
+    for (const std::uint32_t node : own.floor[part.hollow]) ranking.push(part.in, node);
+  }
+  while (const CellWayOut* way = ranking.next()) {
+    if (!ways_out_.is_sound(*way)) continue;
+    CellHole hole = ways_out_.hole_of(*way);
+    if (accept(hole)) return hole;
+  }
+  return std::nullopt;
+}
+
+std::optional<CellHole> CellHolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> voids,
+                                                   const Accept& accept) const {
+  const Vec3d on_surface = surfaces_.model().nearest_on_surface(place);
+  const double off = length(on_surface - place);
+  if (off > 2 * ways_out_.radius()) {
+    const auto to_text = [](Vec3d p) { return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", p.x, p.y, p.z); };
+    const bool outside = outward_.winding_number(place) == 0;
+    throw UsageError(fmt::format("an escape hole is asked for at {}, which is {} mm {}", to_text(place),
+                                 fmt::format("{:f}", off).substr(0, 5),
+                                 outside ? "outside the model" : "inside the model, away from its surface"),
+                     "the surface is nearest at " + to_text(on_surface));
+  }
+  Ways ways;
+  for (const std::uint32_t from : voids) {
+    const VoidNodes& nodes = hollows_[from].nodes();
+    std::vector<std::pair<double, std::uint32_t>> near;
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+      const double distance = length(nodes.at(i) - on_surface);
+      if (distance < ways_out_.longest()) near.emplace_back(distance, i);
+    }
+    std::sort(near.begin(), near.end());
+    const std::size_t step = near.size() / kMostStarts + 1;
+    for (std::size_t i = 0; i < near.size(); i += step) {
+      const Vec3d inside = nodes.at(near[i].second);
+      if (near[i].first <= 0) continue;
+      const auto found = ways_out_.follow(from, inside, (on_surface - inside) * (1 / near[i].first));
+      if (found && length(found->hole.tube.end - on_surface) < ways_out_.radius()) ways.push_back(*found);
+    }
+  }
+  std::stable_sort(ways.begin(), ways.end(),
+                   [](const CellWayOut& a, const CellWayOut& b) { return a.length() < b.length(); });
+  for (const CellWayOut& way : ways) {
+    if (!ways_out_.is_sound(way)) continue;
+    CellHole hole = ways_out_.hole_of(way);
+    if (accept(hole)) return hole;
+  }
+  return std::nullopt;
+}
+
+}  // namespace aerate

@@ -1,0 +1,128 @@
+#include "packing/cell_drainage_ways_out.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/constants.h"
+#include "packing/hole_places.h"
+
+namespace aerate {
+namespace {
+
+// The sine of 30 degrees: no surface is met flatter than that.
+constexpr double kLeastSlope = 0.5;
+
+// The tube starts so far before its side leaves the void, mm, and its two rims are as far apart along it.
+constexpr double kClearance = 0.25;
+
+}  // namespace
+
+double lean_of(Vec3d direction, Vec3d up) {
+  const double rise = dot(direction, up);
+  return std::sqrt(std::max(0.0, 1 - rise * rise));
+}
+
+WaysOut::WaysOut(const std::vector<VoidHollows>& hollows, const PackingLimits& limits, double radius,
+                 const CellSurfaces& surfaces, const kernels::WindingView& outward)
+    : hollows_(hollows),
+      limits_(limits),
+      radius_(radius),
+      longest_(longest_hole({.channel_radius = radius, .hole_radius = radius, .escape_holes = {}}, limits)),
+      surfaces_(surfaces),
+      outward_(outward) {}
+
+double WaysOut::showing(Vec3d place) const {
+  const Vec3d up = limits_.roof.up;
+  const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d back = normalised(cross(up, side));
+  const Vec3d normal = surfaces_.model().normal_near(place);
+  return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
+}
+
+// False if part of the tube's side does not begin in the void, or leaves it too obliquely.
+bool WaysOut::leave_void(const Tube& tube, CellWayOut& way) const {
+  const Vec3d axis = direction_of(tube), up = limits_.roof.up;
+  std::vector<Vec3d> starts = lines_round(tube.start, tube, up);
+  starts.push_back(tube.start);
+  way.first = way.lowest = kInfinity;
+  way.last = way.highest = -kInfinity;
+  for (const Vec3d start : starts) {
+    const auto hit = surfaces_.voids().first_hit(start, axis, 2 * longest_);
+    if (!hit) return false;
+    const Vec3d at = start + axis * *hit;
+    if (dot(surfaces_.voids().normal_near(at), axis) > -kLeastSlope) return false;
+    way.first = std::min(way.first, *hit);
+    way.last = std::max(way.last, *hit);
+    way.lowest = std::min(way.lowest, dot(at, up));
+    way.highest = std::max(way.highest, dot(at, up));
+  }
+  return true;
+}
+
+std::optional<CellWayOut> WaysOut::follow(std::uint32_t from, Vec3d inside, Vec3d direction) const {
+  const auto reached = surfaces_.model().first_hit(inside, direction, 2 * longest_);
+  if (!reached) return std::nullopt;
+  CellWayOut way{.hole = {from, {inside, inside + direction * *reached, radius_}, 0}, .reached = *reached};
+  Tube& tube = way.hole.tube;
+  if (!is_bridged(tube, limits_.roof)) return std::nullopt;
+  if (dot(surfaces_.model().normal_near(tube.end), direction) < kLeastSlope) return std::nullopt;
+  if (!leave_void(tube, way) || way.last + kClearance > way.reached || way.length() > longest_)
+    return std::nullopt;
+  const double skipped = std::max(0.0, way.first - kClearance);
+  tube.start = inside + direction * skipped;
+  way.first -= skipped;
+  way.last -= skipped;
+  way.reached -= skipped;
+  way.showing = showing(tube.end);
+  return way;
+}
+
+bool WaysOut::is_sound(const CellWayOut& way) const {
+  const Tube& tube = way.hole.tube;
+  const Vec3d axis = direction_of(tube);
+  const double needed = radius_ + limits_.wall;
+  for (const double beyond : {radius_, 2 * radius_}) {
+    const Vec3d p = tube.end + axis * beyond;
+    if (surfaces_.model().to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
+    if (outward_.winding_number(p) != 0) return false;
+  }
+  double first_out = kInfinity;
+  for (const Vec3d start : lines_round(tube.start, tube, limits_.roof.up)) {
+    const auto out = surfaces_.model().first_hit(start, axis, 2 * longest_);
+    if (!out || dot(surfaces_.model().normal_near(start + axis * *out), axis) < kLeastSlope) return false;
+    first_out = std::min(first_out, *out);
+    // No void again beyond where it left its own.
+    const auto left = surfaces_.voids().first_hit(start, axis, 2 * longest_);
+    const Vec3d beyond = start + axis * (left.value_or(0) + 1e-4);
+    if (!left || surfaces_.voids().first_hit(beyond, axis, std::max(0.0, *out - *left))) return false;
+  }
+  if (first_out < way.last + kClearance) return false;
+  const Tube outside{tube.start + axis * way.first, tube.end, radius_};
+  return surfaces_.keeps_gap(outside, way.hole.from, way.hole.from) &&
+         surfaces_.model().keeps_wall_on_way_out(outside, kLeastSlope);
+}
+
+double WaysOut::sill_of(const CellWayOut& way, std::size_t orientation) const {
+  const Vec3d up = orientation == kUpright ? limits_.roof.up : -limits_.roof.up;
+  const double inside = orientation == kUpright ? way.lowest : -way.highest;
+  const double outside = dot(way.hole.tube.end, up) - radius_ * lean_of(direction_of(way.hole.tube), up);
+  return std::max(inside, outside);
+}
+
+CellHole WaysOut::hole_of(const CellWayOut& way) const {
+  CellHole result{.hole = way.hole, .passage = {}};
+  const Tube& tube = way.hole.tube;
+  const VoidHollows& hollows = hollows_[way.hole.from];
+  const double depth = 1.5 * hollows.nodes().lattice.spacing;
+  const Vec3d axis = direction_of(tube);
+  const Segment leaving{tube.start + axis * (way.first - depth), tube.start + axis * way.last};
+  result.passage.mouths[0].into = way.hole.from;
+  for (const std::size_t orientation : {kUpright, kUpsideDown}) {
+    const double sill = sill_of(way, orientation);
+    result.passage.sill[orientation] = sill;
+    result.passage.mouths[0].hollows[orientation] = hollows.hollows_near(leaving, radius_, sill, orientation);
+  }
+  return result;
+}
+
+}  // namespace aerate
