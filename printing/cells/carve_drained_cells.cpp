@@ -43,12 +43,13 @@ std::optional<double> passes(Vec3d start, Vec3d direction, const kernels::Facet&
   return dot(ac, q) / determinant;
 }
 
-// Points about an axis, counter-clockwise seen against it.
-std::vector<Vec3d> ring_about(Vec3d centre, Vec3d axis, double radius, std::size_t sides) {
+// Points about an axis, counter-clockwise seen against it, turned by a share of the way to the next.
+std::vector<Vec3d> ring_about(Vec3d centre, Vec3d axis, double radius, std::size_t sides, double turn) {
   const TubeFrame frame = frame_of({centre, centre + axis, radius}, {0, 0, 1});
   std::vector<Vec3d> ring;
   for (std::size_t i = 0; i < sides; ++i) {
-    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(sides);
+    const double angle =
+        2 * std::numbers::pi * (static_cast<double>(i) + turn) / static_cast<double>(sides);
     ring.push_back(centre + frame.down * (radius * std::cos(angle)) +
                    frame.across * (radius * std::sin(angle)));
   }
@@ -63,12 +64,12 @@ struct PrismPair {
 };
 
 PrismPair prisms_of(const Tube& tube, double ring_at, double inward_length, double onward_length,
-                    double tolerance) {
+                    double tolerance, double turn) {
   const Vec3d axis = direction_of(tube);
   const Vec3d middle = tube.start + axis * ring_at;
   const double radius = shrunk(tube).radius;
   PrismPair pair;
-  for (const Vec3d p : ring_about(middle, axis, radius, sides_of(tube, tolerance)))
+  for (const Vec3d p : ring_about(middle, axis, radius, sides_of(tube, tolerance), turn))
     pair.onward.ring.push_back(to_float(p));
   pair.inward.ring.assign(pair.onward.ring.rbegin(), pair.onward.ring.rend());
   // Rounding moves points of the ring along the axis.
@@ -83,17 +84,17 @@ PrismPair prisms_of(const Tube& tube, double ring_at, double inward_length, doub
   return pair;
 }
 
-PrismPair prisms_of_window(const Tube& tube, double tolerance) {
+PrismPair prisms_of_window(const Tube& tube, double tolerance, double turn) {
   const double half = length(tube.end - tube.start) / 2;
-  return prisms_of(tube, half, half, half, tolerance);
+  return prisms_of(tube, half, half, half, tolerance, turn);
 }
 
 // nullopt if no plane across the hole lies between the void's surface and the model's.
 std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::uint32_t> near_outside,
-                                        const Mesh& from, const Tube& tube, double tolerance) {
+                                        const Mesh& from, const Tube& tube, double tolerance, double turn) {
   const Vec3d axis = direction_of(tube);
   const double farthest = length(tube.end - tube.start) + kCutBeyond * tube.radius;
-  std::vector<Vec3d> starts = ring_about(tube.start, axis, tube.radius, sides_of(tube, tolerance));
+  std::vector<Vec3d> starts = ring_about(tube.start, axis, tube.radius, sides_of(tube, tolerance), turn);
   starts.push_back(tube.start);
   Passage out_of_void, outside;
   for (const Vec3d start : starts) {
@@ -111,7 +112,7 @@ std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::
   }
   if (!(outside.first - out_of_void.last > kBeyond)) return std::nullopt;
   const double ring_at = (outside.first + out_of_void.last) / 2;
-  return prisms_of(tube, ring_at, ring_at - out_of_void.first + kBeyond, farthest - ring_at, tolerance);
+  return prisms_of(tube, ring_at, ring_at - out_of_void.first + kBeyond, farthest - ring_at, tolerance, turn);
 }
 
 // A surface that is cut several times. Triangles that are cut away stay in the mesh, marked.
@@ -170,7 +171,7 @@ struct PlannedCut {
 class Carver {
  public:
   Carver(const Mesh& outer, const SurfaceIndex& surface, const CellVoids& cells, const DrainagePlan& plan,
-         double tolerance)
+         double tolerance, const std::vector<double>& turns)
       : plan_(plan), outer_(outer) {
     voids_.reserve(cells.voids.size());
     for (const CellVoid& piece : cells.voids) voids_.emplace_back(piece.surface);
@@ -181,7 +182,7 @@ class Carver {
         const Channel& channel = plan.channels[i];
         cut.from = channel.from;
         cut.to = channel.to;
-        cut.prisms = prisms_of_window(channel.tube, tolerance);
+        cut.prisms = prisms_of_window(channel.tube, tolerance, turns[i]);
         cut.is_made = true;
         return;
       }
@@ -191,7 +192,7 @@ class Carver {
       cut.near_outside =
           surface.triangles_near({hole.tube.start, hole.tube.end + beyond}, hole.tube.radius + kBeyond);
       const auto prisms =
-          prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube, tolerance);
+          prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube, tolerance, turns[i]);
       if (!prisms) return;
       cut.prisms = *prisms;
       cut.near_outside = surface.triangles_near(axis_of(cut.prisms.onward), reach_of(cut.prisms.onward));
@@ -306,7 +307,7 @@ bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const CellVoid& 
   const Vec3d beyond = direction_of(hole) * (kCutBeyond * hole.radius);
   const std::vector<std::uint32_t> near =
       surface.triangles_near({hole.start, hole.end + beyond}, hole.radius + kBeyond);
-  const auto prisms = prisms_of_hole(outer, near, from.surface, hole, tolerance);
+  const auto prisms = prisms_of_hole(outer, near, from.surface, hole, tolerance, 0);
   if (!prisms) return false;
   const CuttingPrism &inward = prisms->inward, &onward = prisms->onward;
   return may_be_cut(outer, surface.triangles_near(axis_of(onward), reach_of(onward)), onward) &&
@@ -316,7 +317,17 @@ bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const CellVoid& 
 std::variant<Solid, UncutTubes> carve_drained_cells(const Mesh& outer, const SurfaceIndex& surface,
                                                     const CellVoids& cells, const DrainagePlan& plan,
                                                     double tolerance, Monitor& monitor) {
-  return Carver(outer, surface, cells, plan, tolerance).carve(monitor);
+  // Small triangles beside a rim may be turned over by rounding to fp32: a turned ring makes others.
+  constexpr double kTurn = 0.382;
+  constexpr int kMostTurns = 6;
+  std::vector<double> turns(plan.channels.size() + plan.holes.size(), 0);
+  for (int i = 1;; ++i) {
+    auto carved = Carver(outer, surface, cells, plan, tolerance, turns).carve(monitor);
+    const auto* uncut = std::get_if<UncutTubes>(&carved);
+    if (uncut == nullptr || i == kMostTurns) return carved;
+    for (const std::size_t window : uncut->windows) turns[window] += kTurn;
+    for (const std::size_t hole : uncut->holes) turns[plan.channels.size() + hole] += kTurn;
+  }
 }
 
 }  // namespace aerate

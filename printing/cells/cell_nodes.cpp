@@ -49,6 +49,13 @@ class Filler {
     // Placing vertices asks whether the surface is near some nodes beyond what limits the balls.
     const double most = nodes_.deepest + 1.5 * box.lattice.spacing;
     double below = kFar;
+    // What the block about this one tells of the surface may do for a node.
+    const double at_least = known.distance - length(middle - known.middle) - region_.wall();
+    if (side == 1 && known.is_inside && at_least >= std::min(behind, nodes_.deepest)) {
+      if (behind >= nodes_.ball_radius)
+        set(i, j, k, std::min(behind, nodes_.deepest), static_cast<float>(at_least), known.facet);
+      return;
+    }
     if (!known.is_deep) {
       const SurfaceNearby near = region_.surface_near(middle, region_.wall() + most + reach, known.facet);
       const bool is_told = length(middle - known.middle) < known.distance;

@@ -7,13 +7,13 @@
 
 namespace aerate {
 
-void keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
+double keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
                const std::vector<Triangle>& triangles) {
   constexpr int kMostRounds = 12;
   // Further than is missing, since a neighbour may not move.
   constexpr double kFurther = 1.2, kLeastStep = 2e-5;  // mm
   std::vector<char> is_moved(vertices.size(), 1);
-  std::vector<double> push(vertices.size());
+  std::vector<double> push(vertices.size()), moved(vertices.size(), 0);
   for (int round = 0; round < kMostRounds; ++round) {
     std::fill(push.begin(), push.end(), 0.0);
     bool is_kept = true;
@@ -27,14 +27,17 @@ void keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
       is_kept = false;
       for (const std::uint32_t v : t) push[v] = std::max(push[v], kFurther * missing + kLeastStep);
     }
-    if (is_kept) return;
+    if (is_kept) break;
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       is_moved[v] = push[v] > 0 ? 1 : 0;
       const Vec3d way = vertices[v].inward - vertices[v].at;
       const double distance = length(way);
-      if (push[v] > 0 && distance > push[v]) vertices[v].at = vertices[v].at + way * (push[v] / distance);
+      if (is_moved[v] == 0 || distance <= push[v]) continue;
+      vertices[v].at = vertices[v].at + way * (push[v] / distance);
+      moved[v] += push[v];
     }
   }
+  return vertices.empty() ? 0 : *std::ranges::max_element(moved);
 }
 
 }  // namespace aerate

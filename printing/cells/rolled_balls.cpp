@@ -39,7 +39,7 @@ class Roller {
       for (std::int32_t j = 0; j < box.count_y; ++j) {
         for (std::int32_t i = 0; i < box.count_x; ++i) {
           const std::size_t node = box.index(i, j, k);
-          if (!nodes_.is_outermost(node)) continue;
+          if (!nodes_.is_outermost(node) || is_surrounded(node)) continue;
           const Vec3d at = box.at(i, j, k);
           add({at, static_cast<double>(nodes_.depth[node]), nodes_.facet[node], is_near_surface(node)});
           add_in_edge(node, at);
@@ -55,6 +55,17 @@ class Roller {
     constexpr double kReach = 1.3;
     return nodes_.surface_depth[node] <
            nodes_.depth[node] + static_cast<float>(kReach * nodes_.box.lattice.spacing);
+  }
+
+  // By nodes that have balls too, which reach as far as its own does.
+  bool is_surrounded(std::size_t node) const {
+    const std::size_t y = nodes_.box.step_y(), z = nodes_.box.step_z();
+    for (const std::size_t layer : {node - z, node, node + z}) {
+      for (const std::size_t row : {layer - y, layer, layer + y}) {
+        if (!nodes_.has_ball(row - 1) || !nodes_.has_ball(row) || !nodes_.has_ball(row + 1)) return false;
+      }
+    }
+    return true;
   }
 
   // Where two or more of what bounds the region are near, a ball in the edge or corner between them.

@@ -27,8 +27,9 @@ constexpr double kLeastVolume = 1;
 // Cells between two questions to the monitor.
 constexpr std::size_t kCellsPerPiece = 64;
 
-// Of the tolerance, for taking out triangles; the rest is for the bend of the surface between nodes.
-constexpr double kShareForDecimation = 0.55;
+// Of the tolerance, for taking out triangles; the rest is for the wall, which triangles that bend round the model
+// would not keep. And what decimation is told at first.
+constexpr double kShareForDecimation = 0.35, kFirstShare = 0.25;
 
 double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Triangle>& triangles) {
   if (vertices.empty()) return 0;
@@ -106,38 +107,54 @@ class CellShaper {
     result.euler = dense.euler;
     result.planned_volume = volume_of(dense.vertices, dense.triangles);
     result.nodes = runs_of_piece(nodes.box, labels, piece);
-    // What decimation bounds is not all: vertices are moved afterwards. So what comes of it is measured.
-    double allowed = kShareForDecimation * shape_.tolerance;
+    // What decimation bounds is the sum of its steps for each vertex that went, and not for what is beside it. So
+    // what comes of it is measured.
+    double allowed = kFirstShare * shape_.tolerance;
     constexpr int kMostTries = 5;
+    Decimated fewer;
     for (int i = 1; i <= kMostTries; ++i) {
-      result.surface = thinned(region, dense, i < kMostTries ? allowed : 0);
-      result.deviation = deviation(dense, result.surface);
-      if (result.deviation <= shape_.tolerance) break;
-      allowed *= std::clamp(0.85 * shape_.tolerance / result.deviation, 0.3, 0.85);
+      fewer = decimate(positions_of(dense), dense.triangles, i < kMostTries ? allowed : 0);
+      result.deviation = deviation(dense, fewer);
+      if (result.deviation <= kShareForDecimation * shape_.tolerance) break;
+      allowed *= std::clamp(0.85 * kShareForDecimation * shape_.tolerance / result.deviation, 0.3, 0.85);
     }
-    return result;
-  }
-
-  static Mesh thinned(const CellRegion& region, const PieceSurface& dense, double allowed) {
-    std::vector<Vec3d> positions;
-    positions.reserve(dense.vertices.size());
-    for (const PlacedVertex& vertex : dense.vertices) positions.push_back(vertex.at);
-    const Decimated fewer = decimate(positions, dense.triangles, allowed);
     std::vector<PlacedVertex> vertices;
     vertices.reserve(fewer.vertices.size());
     for (const std::uint32_t v : fewer.vertices) vertices.push_back(dense.vertices[v]);
-    keep_wall(region, vertices, fewer.triangles);
-    Mesh mesh;
-    for (const PlacedVertex& vertex : vertices) mesh.positions.push_back(to_float(vertex.at));
-    mesh.triangles = fewer.triangles;
-    return mesh;
+    result.deviation += keep_wall(region, vertices, fewer.triangles);
+    for (const PlacedVertex& vertex : vertices) result.surface.positions.push_back(to_float(vertex.at));
+    result.surface.triangles = std::move(fewer.triangles);
+    return result;
   }
 
-  static double deviation(const PieceSurface& dense, const Mesh& surface) {
-    const kernels::HostTriangleBvh bvh(surface.positions, surface.triangles);
+  static std::vector<Vec3d> positions_of(const PieceSurface& surface) {
+    std::vector<Vec3d> positions;
+    positions.reserve(surface.vertices.size());
+    for (const PlacedVertex& vertex : surface.vertices) positions.push_back(vertex.at);
+    return positions;
+  }
+
+  // How far the vertices that went are from what is left at most.
+  static double deviation(const PieceSurface& dense, const Decimated& fewer) {
+    std::vector<Vec3f> positions;
+    positions.reserve(fewer.vertices.size());
+    std::vector<char> is_left(dense.vertices.size(), 0);
+    for (const std::uint32_t v : fewer.vertices) {
+      positions.push_back(to_float(dense.vertices[v].at));
+      is_left[v] = 1;
+    }
+    const kernels::HostTriangleBvh bvh(positions, fewer.triangles);
     double most = 0;
-    for (const PlacedVertex& vertex : dense.vertices)
-      most = std::max(most, bvh.view().nearest(vertex.at, kInfinity).distance_squared);
+    kernels::NearestFacet near{kInfinity, kNone};
+    for (std::size_t v = 0; v < dense.vertices.size(); ++v) {
+      if (is_left[v] != 0) continue;
+      // Vertices that follow each other are near each other.
+      const Vec3d at = dense.vertices[v].at;
+      if (near.facet != kNone)
+        near.distance_squared = kernels::distance_squared_to_facet(at, bvh.view().facets[near.facet]);
+      near = bvh.view().nearer_than(at, near);
+      most = std::max(most, near.distance_squared);
+    }
     return std::sqrt(most);
   }
 

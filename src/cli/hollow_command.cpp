@@ -36,6 +36,9 @@ std::vector<std::string> described_flavor(const SlicerProfile& slicer) {
                       slicer.untested ? "; untested" : "")};
 }
 
+// Inner walls need less than the outer surface of spheres, and cells have more of them.
+constexpr double kCellTolerance = 0.1;  // mm
+
 struct HollowCommand {
   HollowCommand(CLI::App& command, const ConfigFile& config)
       : model(command),
@@ -64,20 +67,29 @@ struct HollowCommand {
             "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
         ->type_name("FILE");
     command
-        .add_option(
-            "--shape", shape,
-            "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
-            "thick as --gap and take nearly all that is deeper than --wall")
+        .add_option("--shape", shape,
+                    "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
+                    "thick as --gap and take nearly all that is deeper than --wall (default cells for modifiers "
+                    "and where voids drain and ceilings are not limited, which is " +
+                        processes_that(makes_cells) + "; else spheres)")
         ->check(CLI::IsMember({"spheres", "cells"}))
-        ->type_name("SHAPE")
-        ->capture_default_str();
+        ->type_name("SHAPE");
     command
-        .add_option("--fillet", fillet,
-                    "Cells: radius of their inner edges; what is narrower than a ball of it stays solid "
-                    "(default the channels' radius, else 1)")
+        .add_option("--cell-size", cell_size,
+                    "Cells: about how far inner walls are apart (default 21, or what --max-radius gives)")
         ->check(number_between({}, kLongest, "mm"))
         ->type_name("MM");
-    add_tolerance(command, tolerance);
+    command
+        .add_option("--fillet", fillet,
+                    "Cells: radius of their inner edges; what is narrower than a ball of it stays solid (default "
+                    "the channels' radius, else 1)")
+        ->check(number_between({}, kLongest, "mm"))
+        ->type_name("MM");
+    command
+        .add_option("--tolerance", tolerance,
+                    "Void surfaces stay this far inside their shapes at most (default 0.05, of cells 0.1)")
+        ->check(number_between({}, kLongest, "mm"))
+        ->type_name("MM");
     command
         .add_option("--max-triangles", max_triangles,
                     "Loosen the tolerance until the result has at most so many triangles")
@@ -132,9 +144,11 @@ struct HollowCommand {
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
     if (!options.modifiers) options = drainage.applied_to(std::move(options));
-    if (shape == "cells") options.cells = cells_under(options);
+    if (is_cells(options)) options = with_cells(std::move(options));
     if (!options.cells && fillet) throw UsageError("--fillet without --shape cells", "spheres have no edges");
-    options.tolerance = tolerance;
+    if (!options.cells && cell_size)
+      throw UsageError("--cell-size without --shape cells", "--max-radius says how large spheres are");
+    options.tolerance = tolerance.value_or(options.cells ? kCellTolerance : HollowOptions{}.tolerance);
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
@@ -142,17 +156,32 @@ struct HollowCommand {
                                        density, price);
     options.print = print.settings(options.packing);
     options.heavier = print.heavier();
-    require_tolerance_for(options.packing.limits(), tolerance);
+    require_tolerance_for(options.packing.limits(), options.tolerance);
     return options;
   }
 
-  CellOptions cells_under(const HollowOptions& options) const {
+  // Whether voids are cells, if that was not said.
+  static bool makes_cells(const Process& process) {
+    return process.drainage == Drainage::needed && !process.limits.contains(Limit::bridge);
+  }
+
+  bool is_cells(const HollowOptions& options) const {
+    if (!shape.empty()) return shape == "cells";
+    const PackingRequest& request = options.packing;
+    if (request.method->on_lattice || !request.spheres.empty() || request.stop.target_density < 1) return false;
+    const PackingLimits limits = request.limits();
+    return options.modifiers || (request.process.process.drainage == Drainage::needed &&
+                                 !limits.roof.shapes(limits.max_radius));
+  }
+
+  HollowOptions with_cells(HollowOptions options) const {
+    options.packing.process = sized_for_cells(std::move(options.packing.process), cell_size);
     const PackingLimits limits = options.packing.limits();
     if (!options.modifiers && limits.roof.shapes(limits.max_radius))
-      throw UsageError(
-          "--shape cells: cells get no roofs so far, and ceilings are limited here",
-          "--as modifiers leaves the model solid; --bridge of twice --max-radius limits nothing");
-    return {fillet.value_or(options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet)};
+      throw UsageError("--shape cells: cells get no roofs so far, and ceilings are limited here",
+                       "--as modifiers leaves the model solid; --bridge of twice --max-radius limits nothing");
+    options.cells = {fillet.value_or(options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet)};
+    return options;
   }
 
   void run() const {
@@ -172,9 +201,10 @@ struct HollowCommand {
   std::string flavor = of_slicers(flavor_of).front();
   double modifier_infill = ModifierOptions{}.infill_percent;
   std::string spheres;
-  std::string shape = "spheres";
+  std::string shape;
+  std::optional<double> cell_size;
   std::optional<double> fillet;
-  double tolerance = HollowOptions{}.tolerance;
+  std::optional<double> tolerance;
   std::optional<double> max_triangles;
   std::string surface = "auto";
   std::optional<double> voxel_size;

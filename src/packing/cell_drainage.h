@@ -23,6 +23,9 @@ struct PlannedCellDrainage {
 // Can the surfaces be opened for this hole, out of that void (index into cells.voids)?
 using CanOpenCell = std::function<bool(const Tube& tube, std::uint32_t from)>;
 
+// Can a wall be opened for this window? It may be known not to be only when it was tried.
+using CanOpenWall = std::function<bool(const Tube& window)>;
+
 // Joins voids that are cells by windows in their walls, and opens them to the outside.
 //
 // Voids are the nodes of a graph, its edges round places in the flat parts of both faces of a wall
@@ -39,6 +42,7 @@ using CanOpenCell = std::function<bool(const Tube& tube, std::uint32_t from)>;
 // nothing can be opened; InterruptedError.
 PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVoids& cells,
                                        const PackingLimits& limits, const DrainageRequest& request,
-                                       const CanOpenCell& can_open, Monitor& monitor);
+                                       const CanOpenCell& can_open, const CanOpenWall& can_open_wall,
+                                       Monitor& monitor);
 
 }  // namespace aerate

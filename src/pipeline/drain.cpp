@@ -174,15 +174,18 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   require_resolvable(model.mesh, request.hole_radius, tolerance, "an escape hole");
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
+  const auto is_refused = [&](const Tube& tube) {
+    return std::ranges::any_of(
+        refused, [&](const Tube& other) { return other.start == tube.start && other.end == tube.end; });
+  };
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
-    const auto is_it = [&](const Tube& other) { return other.start == tube.start && other.end == tube.end; };
-    return std::none_of(refused.begin(), refused.end(), is_it) &&
-           may_be_cut(model.mesh, surface, cells.voids[from], tube, tolerance) &&
+    return !is_refused(tube) && may_be_cut(model.mesh, surface, cells.voids[from], tube, tolerance) &&
            !is_crossed_near(model.mesh, surface, tube);
   };
+  const auto can_open_wall = [&](const Tube& window) { return !is_refused(window); };
   while (true) {
-    PlannedCellDrainage planned =
-        plan_cell_drainage({surface, outward.winding()}, cells, limits, request, can_open, monitor);
+    PlannedCellDrainage planned = plan_cell_drainage({surface, outward.winding()}, cells, limits, request,
+                                                     can_open, can_open_wall, monitor);
     CellVoids kept{cells.planes, cells.lattice, cells.ball_radius, {}};
     for (const std::uint32_t i : planned.kept) kept.voids.push_back(cells.voids[i]);
     auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
@@ -192,14 +195,15 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
       return {std::move(kept), std::move(voids), std::move(*solid)};
     }
     const auto& uncut = std::get<UncutTubes>(carved);
-    if (!uncut.windows.empty()) {
-      const Tube& window = planned.plan.channels[uncut.windows.front()].tube;
-      throw FailureError(fmt::format("the window near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut",
-                                     window.start.x, window.start.y, window.start.z),
-                         "raise --tolerance or --fillet");
-    }
-    if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[uncut.holes.front()]);
-    for (const std::size_t i : uncut.holes) refused.push_back(planned.plan.holes[i].tube);
+    const auto refuse = [&](const Tube& tube) {
+      if (refused.size() >= kMostRefused)
+        throw FailureError(fmt::format("the surfaces at a tube near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut",
+                                       tube.start.x, tube.start.y, tube.start.z),
+                           "raise --tolerance, or give another --channel-diameter or --hole-diameter");
+      refused.push_back(tube);
+    };
+    for (const std::size_t i : uncut.windows) refuse(planned.plan.channels[i].tube);
+    for (const std::size_t i : uncut.holes) refuse(planned.plan.holes[i].tube);
   }
 }
 

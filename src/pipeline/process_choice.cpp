@@ -1,5 +1,6 @@
 #include "pipeline/process_choice.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
 #include <utility>
@@ -97,6 +98,39 @@ ProcessChoice kept_to_balls_without_roofs(ProcessChoice choice) {
   LimitValue& largest = choice.limits.at(Limit::max_radius);
   if (limits.roof.shapes(limits.max_radius) && largest.origin == default_of(choice.process))
     largest = {largest_without_roof(limits.roof), "", "the largest of a lattice that need no roof"};
+  return choice;
+}
+
+ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_size) {
+  constexpr double kLargestUnasked = 10;  // mm
+  LimitValue& largest = choice.limits.at(Limit::max_radius);
+  LimitValue& least = choice.limits.at(Limit::min_radius);
+  const bool is_given = largest.origin != default_of(choice.process);
+  if (cell_size) {
+    const double radius = (*cell_size - choice.limits.at(Limit::gap).value) / 2;
+    if (is_given) throw UsageError("--cell-size and --max-radius say the same", "leave out one of them");
+    if (!(radius > 0))
+      throw UsageError(fmt::format("--cell-size {:g} mm is no more than --gap", *cell_size),
+                       "give a larger --cell-size");
+    largest = {radius, "", fmt::format("of --cell-size {:g}", *cell_size)};
+  } else if (!is_given && largest.value > kLargestUnasked) {
+    largest = {std::max(kLargestUnasked, least.value), "", "of cells, unless --cell-size says otherwise"};
+  }
+  if (least.value > largest.value) {
+    if (least.origin != default_of(choice.process))
+      throw UsageError(fmt::format("--min-radius {:g} mm is more than the {:g} mm of cells of this size",
+                                   least.value, largest.value),
+                       "give a smaller --min-radius or a larger --cell-size");
+    least.value = largest.value / 2;
+  }
+  return choice;
+}
+
+ProcessChoice evenly_large(ProcessChoice choice, double fitting) {
+  LimitValue& least = choice.limits.at(Limit::min_radius);
+  if (least.origin != default_of(choice.process)) return choice;
+  const double half = std::min(fitting, choice.limits.at(Limit::max_radius).value) / 2;
+  if (half > least.value) least = {half, "", "half of the largest, for cells"};
   return choice;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,15 @@ ProcessChoice limits_under(const Process& process, const Limits& given, ProcessC
 // For a lattice, whose balls have no room for roofs: unless the user gave the largest radius, it becomes that
 // of the largest balls that need none.
 ProcessChoice kept_to_balls_without_roofs(ProcessChoice choice);
+
+// For voids that are cells: inner walls about `cell_size` mm apart, or the process's largest voids but no larger than
+// those of cells of 21 mm with a gap of 1 mm, which is what the largest radius becomes. Throws UsageError for a size
+// that leaves no radius, or if a largest radius was given beside it.
+ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_size);
+
+// The same, with evenly large spheres, whose cells take more than those of many small ones beside large ones: unless
+// the user gave the least radius, it becomes half of the largest that there will be, `fitting` or the limit.
+ProcessChoice evenly_large(ProcessChoice choice, double fitting);
 
 // The same job with voids that drain: under the limits of tubes too, those given or the process's. Throws
 // UsageError if one is neither, or if holes are narrower than channels.

@@ -1,0 +1,142 @@
+#include <cstddef>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/cli/job.h"
+#include "tests/support/caught.h"
+
+// Voids that fill their cells, as the program makes and reports them.
+namespace aerate::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kUsage = 2;
+
+Json json_of(std::vector<std::string> command) {
+  command.insert(command.end(), {"--json", "-"});
+  const ProcessResult result = run(command);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+double removed_by(const Json& report) {
+  return report.at("volume").at("removed_mm3").get<double>();
+}
+
+// What holds for every result, and what another program run makes of the file.
+void expect_sound(const Job& job, const Json& report, std::size_t shells) {
+  EXPECT_GE(report["measured"]["wall_mm"].get<double>(), report["limits"]["wall_mm"].get<double>() - 1e-6);
+  EXPECT_GE(report["measured"]["gap_mm"].get<double>(), report["limits"]["gap_mm"].get<double>() - 1e-6);
+  EXPECT_NEAR(report["volume"]["before_mm3"].get<double>() - report["volume"]["after_mm3"].get<double>(),
+              removed_by(report), 1e-3);
+  const ProcessResult result = run({AERATE_EXECUTABLE, "inspect", job.output(), "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json input = Json::parse(result.out).at("input");
+  EXPECT_EQ(input["shells"], shells);
+  EXPECT_TRUE(input["closed"].get<bool>());
+  EXPECT_EQ(input["non_manifold_edges"], report["input"]["non_manifold_edges"]);
+  EXPECT_NEAR(input["signed_volume_mm3"].get<double>(), report["volume"]["after_mm3"].get<double>(),
+              1e-6 * report["volume"]["before_mm3"].get<double>());
+}
+
+TEST(CellsCommand, ADrainedBunnyIsLighterThanWithSpheres) {
+  const Job job;
+  const Json spheres = json_of(job.hollow(sample("bunny.stl"), {"--process", "sls"}));
+  const Json cells = json_of(job.hollow(sample("bunny.stl"), {"--process", "sls", "--shape", "cells"}));
+  expect_sound(job, cells, 1);
+  EXPECT_EQ(cells["drainage"]["sealed_cavities"], 0);
+  EXPECT_GE(cells["drainage"]["holes"].size(), 2U * cells["drainage"]["networks"].get<std::size_t>());
+  EXPECT_LE(cells["drainage"]["pools"]["after_both_percent"].get<double>(), 1.0);
+  EXPECT_GT(removed_by(cells), removed_by(spheres));
+}
+
+// Two cells, nearly all that is deeper than the wall.
+TEST(CellsCommand, SealedCellsAreShellsOfTheirOwn) {
+  const Job job;
+  const Json report = json_of(job.hollow(
+      job.input("block.stl", make_box({0, 0, 0}, {40, 20, 20})),
+      {"--shape", "cells", "--drain", "none", "--min-radius", "6", "--max-radius", "8", "--bridge", "20"}));
+  expect_sound(job, report, 1 + report["voids"]["count"].get<std::size_t>());
+  EXPECT_TRUE(report["drainage"].is_null());
+  EXPECT_EQ(report["voids"]["tolerance_used_mm"], 0.05);
+}
+
+TEST(CellsCommand, CellsAsModifiersLeaveTheModelSolid) {
+  const Job job;
+  const ProcessResult result =
+      run({AERATE_EXECUTABLE, "hollow", job.input("block.stl", block()), "-o", job.output("out.3mf"), "--as",
+           "modifiers", "--shape", "cells", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_bytes(job.output("out.3mf")).substr(0, 2), "PK");
+  const Json report = Json::parse(result.out);
+  EXPECT_TRUE(report["drainage"].is_null());
+  EXPECT_FALSE(report["modifiers"].is_null());
+}
+
+TEST(CellsCommand, AFilletIsOneOfCells) {
+  const Job job;
+  const ProcessResult result = run(job.hollow(job.input("block.stl", block()), {"--fillet", "1"}));
+  EXPECT_EQ(result.exit_code, kUsage);
+  EXPECT_TRUE(contains(result.err, "--fillet without --shape cells"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+TEST(CellsCommand, CellsNeedNoCeilingsToBeLimited) {
+  const Job job;
+  const ProcessResult result =
+      run(job.hollow(job.input("block.stl", block()), {"--process", "fdm", "--shape", "cells"}));
+  EXPECT_EQ(result.exit_code, kUsage);
+  EXPECT_TRUE(contains(result.err, "cells get no roofs"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+TEST(CellsCommand, AFilletThatFitsNowhereLeavesNothingToRemove) {
+  constexpr int kNothingToRemove = 5;
+  const Job job;
+  const ProcessResult result = run(job.hollow(job.input("block.stl", block()),
+                                              {"--process", "sls", "--shape", "cells", "--fillet", "14"}));
+  EXPECT_EQ(result.exit_code, kNothingToRemove);
+  EXPECT_TRUE(contains(result.err, "no cell takes a ball of --fillet 14 mm"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+TEST(CellsCommand, MaxTrianglesLoosensTheTolerance) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  const std::vector<std::string> options{"--process", "sls", "--shape", "cells"};
+  const Json free = json_of(job.hollow(model, options));
+  const auto triangles = free["output"]["triangles"].get<std::size_t>();
+  const std::size_t most = triangles * 7 / 10;
+  std::vector<std::string> limited = options;
+  limited.insert(limited.end(), {"--max-triangles", std::to_string(most)});
+  const Json report = json_of(job.hollow(model, limited));
+  EXPECT_LE(report["output"]["triangles"].get<std::size_t>(), most);
+  EXPECT_GT(report["voids"]["tolerance_used_mm"].get<double>(), 0.05);
+  EXPECT_TRUE(contains(report["notices"].dump(), "to stay within " + std::to_string(most) + " triangles"));
+
+  const Job other;
+  limited.back() = "20";
+  const ProcessResult result = run(other.hollow(model, limited));
+  EXPECT_EQ(result.exit_code, kUsage);
+  EXPECT_TRUE(contains(result.err, "--max-triangles 20"));
+  EXPECT_EQ(entries_of(other.outputs()), std::vector<std::string>{});
+}
+
+TEST(CellsCommand, SameBytesForAnyThreadCount) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  std::vector<std::string> bytes;
+  for (const char* threads : {"1", "2"}) {
+    const ProcessResult result =
+        run(job.hollow(model, {"--process", "sls", "--shape", "cells", "--threads", threads}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    bytes.push_back(read_bytes(job.output()));
+  }
+  EXPECT_EQ(bytes[0], bytes[1]);
+}
+
+}  // namespace
+}  // namespace aerate::test
