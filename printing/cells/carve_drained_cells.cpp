@@ -48,8 +48,7 @@ std::vector<Vec3d> ring_about(Vec3d centre, Vec3d axis, double radius, std::size
   const TubeFrame frame = frame_of({centre, centre + axis, radius}, {0, 0, 1});
   std::vector<Vec3d> ring;
   for (std::size_t i = 0; i < sides; ++i) {
-    const double angle =
-        2 * std::numbers::pi * (static_cast<double>(i) + turn) / static_cast<double>(sides);
+    const double angle = 2 * std::numbers::pi * (static_cast<double>(i) + turn) / static_cast<double>(sides);
     ring.push_back(centre + frame.down * (radius * std::cos(angle)) +
                    frame.across * (radius * std::sin(angle)));
   }
@@ -191,8 +190,8 @@ class Carver {
       const Vec3d beyond = direction_of(hole.tube) * (kCutBeyond * hole.tube.radius);
       cut.near_outside =
           surface.triangles_near({hole.tube.start, hole.tube.end + beyond}, hole.tube.radius + kBeyond);
-      const auto prisms =
-          prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube, tolerance, turns[i]);
+      const auto prisms = prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube,
+                                         tolerance, turns[i]);
       if (!prisms) return;
       cut.prisms = *prisms;
       cut.near_outside = surface.triangles_near(axis_of(cut.prisms.onward), reach_of(cut.prisms.onward));

@@ -8,7 +8,7 @@
 namespace aerate {
 
 double keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
-               const std::vector<Triangle>& triangles) {
+                 const std::vector<Triangle>& triangles) {
   constexpr int kMostRounds = 12;
   // Further than is missing, since a neighbour may not move.
   constexpr double kFurther = 1.2, kLeastStep = 2e-5;  // mm

@@ -13,6 +13,6 @@ namespace aerate {
 // do not. Triangles are those that a file will have, of positions rounded to fp32, and distances exact.
 // Returns how far a vertex was moved at most, mm.
 double keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
-               const std::vector<Triangle>& triangles);
+                 const std::vector<Triangle>& triangles);
 
 }  // namespace aerate

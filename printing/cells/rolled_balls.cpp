@@ -46,7 +46,7 @@ class Roller {
         }
       }
     }
-    if (own.radius >= nodes_.ball_radius) add({own.centre, own.radius, kNone, true});
+    if (has_room_for(own)) add({own.centre, own.radius, kNone, true});
   }
 
  private:
@@ -55,6 +55,18 @@ class Roller {
     constexpr double kReach = 1.3;
     return nodes_.surface_depth[node] <
            nodes_.depth[node] + static_cast<float>(kReach * nodes_.box.lattice.spacing);
+  }
+
+  // Not where something else than the region limits the nodes' balls.
+  bool has_room_for(const Sphere& own) const {
+    const NodeBox& box = nodes_.box;
+    const Vec3d place = (own.centre - box.at(0, 0, 0)) * (1 / box.lattice.spacing);
+    const auto nearest = [](double x) { return static_cast<std::int32_t>(std::lround(x)); };
+    const std::int32_t i = nearest(place.x), j = nearest(place.y), k = nearest(place.z);
+    if (i < 0 || j < 0 || k < 0 || i >= box.count_x || j >= box.count_y || k >= box.count_z) return false;
+    const double expected = std::min(own.radius - box.lattice.spacing, nodes_.deepest);
+    return own.radius >= nodes_.ball_radius &&
+           nodes_.depth[box.index(i, j, k)] >= static_cast<float>(expected);
   }
 
   // By nodes that have balls too, which reach as far as its own does.

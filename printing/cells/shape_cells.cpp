@@ -5,12 +5,15 @@
 #include <cstddef>
 #include <fmt/format.h>
 #include <iterator>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
 
+#include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "printing/cells/cell_nodes.h"
 #include "printing/cells/decimate.h"
@@ -54,7 +57,8 @@ class CellShaper {
     for (const Vec3d place : solid) keep_solid_about(nodes, place);
     std::vector<CellVoid> voids;
     std::vector<std::int32_t> labels;
-    while (nodes.box.size() > 0) {
+    constexpr int kMostPieces = 64;
+    for (int rounds = 0; nodes.box.size() > 0 && rounds < kMostPieces; ++rounds) {
       const OpenedCell opened = open_cell(region, nodes, packing_.spheres[cell]);
       const std::vector<NodePiece> pieces = find_pieces(nodes.box, opened.is_void, labels);
       const auto is_worth_it = [&](const NodePiece& piece) {
@@ -63,7 +67,13 @@ class CellShaper {
       };
       const auto piece = std::ranges::find_if(pieces, is_worth_it);
       if (piece == pieces.end()) break;
-      voids.push_back(make(cell, region, nodes, opened, labels, piece->label));
+      const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
+      const PieceSurface surface = surface_of_piece(nodes.box, opened, nodes, labels, piece->label, placer);
+      if (const auto loose = middle_of_loose_solid(surface)) {
+        keep_attached(nodes, *loose);
+        continue;
+      }
+      voids.push_back(make(cell, region, surface, runs_of_piece(nodes.box, labels, piece->label)));
       if (std::none_of(std::next(piece), pieces.end(), [](const NodePiece& other) { return other.size > 8; }))
         break;
       keep_away_from(nodes, labels, piece->label);
@@ -98,15 +108,13 @@ class CellShaper {
     return false;
   }
 
-  CellVoid make(std::uint32_t cell, const CellRegion& region, const CellNodes& nodes,
-                const OpenedCell& opened, const std::vector<std::int32_t>& labels, std::int32_t piece) const {
-    const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
-    const PieceSurface dense = surface_of_piece(nodes.box, opened, nodes, labels, piece, placer);
+  CellVoid make(std::uint32_t cell, const CellRegion& region, const PieceSurface& dense,
+                std::vector<NodeRun> nodes) const {
     CellVoid result;
     result.cell = cell;
     result.euler = dense.euler;
     result.planned_volume = volume_of(dense.vertices, dense.triangles);
-    result.nodes = runs_of_piece(nodes.box, labels, piece);
+    result.nodes = std::move(nodes);
     // What decimation bounds is the sum of its steps for each vertex that went, and not for what is beside it. So
     // what comes of it is measured.
     double allowed = kFirstShare * shape_.tolerance;
@@ -158,6 +166,44 @@ class CellShaper {
     return std::sqrt(most);
   }
 
+  // Where a void would surround a piece of solid, which would then be loose: the middle of that.
+  static std::optional<Vec3d> middle_of_loose_solid(const PieceSurface& surface) {
+    DisjointSets shells(surface.vertices.size());
+    for (const Triangle& t : surface.triangles) {
+      shells.join(t[0], t[1]);
+      shells.join(t[1], t[2]);
+    }
+    // Of each shell; the one that reaches lowest along x is the outermost.
+    std::map<std::uint32_t, Box3d> boxes;
+    for (std::uint32_t v = 0; v < surface.vertices.size(); ++v) {
+      const Vec3d at = surface.vertices[v].at;
+      const auto [box, is_new] = boxes.try_emplace(shells.root(v), Box3d{at, at});
+      if (!is_new) box->second = {min_of(box->second.lower, at), max_of(box->second.upper, at)};
+    }
+    if (boxes.size() < 2) return std::nullopt;
+    const auto outermost =
+        std::ranges::min_element(boxes, {}, [](const auto& shell) { return shell.second.lower.x; });
+    const auto loose = boxes.begin() == outermost ? std::next(boxes.begin()) : boxes.begin();
+    return (loose->second.lower + loose->second.upper) * 0.5;
+  }
+
+  // Keeps a plane wall of solid, as thick as the gap, from a place to the cell's end along x.
+  void keep_attached(CellNodes& nodes, Vec3d place) const {
+    const NodeBox& box = nodes.box;
+    const double half = std::max(packing_.limits.gap, 2 * lattice_.spacing) / 2;
+    for (std::int32_t k = 0; k < box.count_z; ++k) {
+      for (std::int32_t j = 0; j < box.count_y; ++j) {
+        for (std::int32_t i = 0; i < box.count_x; ++i) {
+          const Vec3d away = box.at(i, j, k) - place;
+          // Nodes tell to within a spacing where the surface is.
+          limit(
+              nodes, box.index(i, j, k),
+              std::hypot(std::max(0.0, -away.x), std::max(0.0, std::abs(away.y) - half)) - lattice_.spacing);
+        }
+      }
+    }
+  }
+
   void keep_solid_about(CellNodes& nodes, Vec3d place) const {
     constexpr double kSpacings = 2;
     const NodeBox& box = nodes.box;
@@ -180,8 +226,8 @@ class CellShaper {
   // What is left of the cell: without a piece, and no nearer to it than the gap.
   void keep_away_from(CellNodes& nodes, const std::vector<std::int32_t>& labels, std::int32_t piece) const {
     const NodeBox& box = nodes.box;
-    // Nodes tell to within a spacing where surfaces are.
-    const double kept = packing_.limits.gap + lattice_.spacing;
+    // Nodes tell to within a spacing where a surface is, and its vertices are placed up to another away.
+    const double kept = packing_.limits.gap + 3 * lattice_.spacing;
     const double reach = kept + nodes.deepest;
     const auto steps = static_cast<std::int32_t>(reach / lattice_.spacing);
     std::vector<float> allowed(box.size(), static_cast<float>(nodes.deepest));

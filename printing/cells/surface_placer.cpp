@@ -1,6 +1,7 @@
 #include "printing/cells/surface_placer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "printing/cells/nearest_in_halfspaces.h"
 
@@ -45,7 +46,8 @@ PlacedVertex SurfacePlacer::place(Vec3d point, const RolledBall& near, bool is_c
     nearest = &plane;
   }
   std::uint32_t hint = near.facet;
-  if (nearest != nullptr && behind < radius_) {
+  // No vertex is moved far: where another piece of the cell is near, the void ends within the region.
+  if (nearest != nullptr && std::abs(behind) < spacing_) {
     const Vec3d centre = point - nearest->normal * (radius_ - behind);
     if (region_.behind_planes(centre) >= radius_ - kSame) {
       const bool is_clear = !near.is_near_surface ||
@@ -72,7 +74,8 @@ PlacedVertex SurfacePlacer::place(Vec3d point, const RolledBall& near, bool is_c
       const Vec3d foot = region_.nearest_on(hint, point);
       const Vec3d away = normalised(point - foot);
       const Vec3d centre = foot + away * needed;
-      if (region_.behind_planes(centre) >= radius_ &&
+      if (std::abs(surface.distance - region_.wall()) < spacing_ &&
+          region_.behind_planes(centre) >= radius_ &&
           region_.surface_near(centre, needed, hint).distance >= needed - kSame)
         return {centre - away * (radius_ - kSame - margin_), centre};
       keep_away(point, hint);

@@ -104,6 +104,7 @@ class CellChecker {
     const SurfaceTopology topology = topology_of(triangles);
     if (topology.flaw) return topology.flaw;
     if (topology.pinch_count > 0) return "a vertex pinches it";
+    if (topology.shell_count != 1) return "it surrounds solid material, which would be loose";
     if (topology.euler != planned.euler)
       return fmt::format("its Euler characteristic is {}, planned was {}", topology.euler, planned.euler);
     return std::nullopt;

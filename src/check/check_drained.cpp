@@ -101,11 +101,18 @@ void require_sound_edges(const Topology& topology, const Expected& expected) {
 // into a cavity of the model.
 std::size_t count_sealed(const Mesh& read_back, const Topology& topology, const Expected& expected) {
   const ShellLabels& labels = topology.labels;
-  std::vector<bool> is_sealed(labels.count, false);
+  std::vector<bool> is_sealed(labels.count, false), reaches_outside(labels.count, false);
+  for (std::size_t i = 0; i < expected.solid.outer_triangle_count(); ++i) {
+    if (labels.of_triangle[i] != kNone) reaches_outside[labels.of_triangle[i]] = true;
+  }
   for (std::size_t i = expected.solid.outer_triangle_count(); i < read_back.triangles.size(); ++i) {
     const std::uint32_t label = labels.of_triangle[i];
     if (label == kNone) fail_check("triangle {} belongs to no shell", i);
-    if (topology.shells[label].volume <= 0) is_sealed[label] = true;
+    if (topology.shells[label].volume <= 0) {
+      is_sealed[label] = true;
+    } else if (!reaches_outside[label]) {
+      fail_check("a void surrounds solid material, which would be loose (triangle {})", i);
+    }
   }
   const std::vector<EscapeHole>& holes = expected.drainage->holes;
   const OutwardShells outward(expected.model, expected.inspection, expected.surface);

@@ -18,7 +18,8 @@ struct Expected {
   const SurfaceIndex& surface;   // of `model`
   const Inspection& inspection;  // of `model`: flaws that the output may keep
   const Packing& packing;        // the voids, and the limits that they obey
-  const CellVoids* cells = nullptr;  // what was made of their cells; null: the voids are the packing's own shapes
+  const CellVoids* cells =
+      nullptr;                   // what was made of their cells; null: the voids are the packing's own shapes
   const DrainagePlan* drainage;  // their channels and holes; null: each void is sealed
   double tolerance = 0;          // mm
   OuterSurface outer = OuterSurface::kept;

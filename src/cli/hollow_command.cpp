@@ -67,11 +67,13 @@ struct HollowCommand {
             "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
         ->type_name("FILE");
     command
-        .add_option("--shape", shape,
-                    "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
-                    "thick as --gap and take nearly all that is deeper than --wall (default cells for modifiers "
-                    "and where voids drain and ceilings are not limited, which is " +
-                        processes_that(makes_cells) + "; else spheres)")
+        .add_option(
+            "--shape", shape,
+            "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
+            "thick as --gap and take nearly all that is deeper than --wall (default cells where voids drain "
+            "and "
+            "ceilings are not limited, which is " +
+                processes_that(makes_cells) + "; else spheres)")
         ->check(CLI::IsMember({"spheres", "cells"}))
         ->type_name("SHAPE");
     command
@@ -80,9 +82,10 @@ struct HollowCommand {
         ->check(number_between({}, kLongest, "mm"))
         ->type_name("MM");
     command
-        .add_option("--fillet", fillet,
-                    "Cells: radius of their inner edges; what is narrower than a ball of it stays solid (default "
-                    "the channels' radius, else 1)")
+        .add_option(
+            "--fillet", fillet,
+            "Cells: radius of their inner edges; what is narrower than a ball of it stays solid (default "
+            "the channels' radius, else 1)")
         ->check(number_between({}, kLongest, "mm"))
         ->type_name("MM");
     command
@@ -168,19 +171,22 @@ struct HollowCommand {
   bool is_cells(const HollowOptions& options) const {
     if (!shape.empty()) return shape == "cells";
     const PackingRequest& request = options.packing;
-    if (request.method->on_lattice || !request.spheres.empty() || request.stop.target_density < 1) return false;
+    if (request.method->on_lattice || !request.spheres.empty() || request.stop.target_density < 1)
+      return false;
     const PackingLimits limits = request.limits();
-    return options.modifiers || (request.process.process.drainage == Drainage::needed &&
-                                 !limits.roof.shapes(limits.max_radius));
+    return !options.modifiers && request.process.process.drainage == Drainage::needed &&
+           !limits.roof.shapes(limits.max_radius);
   }
 
   HollowOptions with_cells(HollowOptions options) const {
     options.packing.process = sized_for_cells(std::move(options.packing.process), cell_size);
     const PackingLimits limits = options.packing.limits();
     if (!options.modifiers && limits.roof.shapes(limits.max_radius))
-      throw UsageError("--shape cells: cells get no roofs so far, and ceilings are limited here",
-                       "--as modifiers leaves the model solid; --bridge of twice --max-radius limits nothing");
-    options.cells = {fillet.value_or(options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet)};
+      throw UsageError(
+          "--shape cells: cells get no roofs so far, and ceilings are limited here",
+          "--as modifiers leaves the model solid; --bridge of twice --max-radius limits nothing");
+    options.cells = {
+        fillet.value_or(options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet)};
     return options;
   }
 

@@ -7,7 +7,6 @@
 
 #include "kernels/constants.h"
 
-
 namespace aerate {
 namespace {
 
@@ -22,7 +21,8 @@ struct Corners {
 
   // Does a point of the plane, or one that projects there, lie within all three sides?
   bool holds(Vec3d p) const {
-    return dot(cross(normal, at[1] - at[0]), p - at[0]) >= 0 && dot(cross(normal, at[2] - at[1]), p - at[1]) >= 0 &&
+    return dot(cross(normal, at[1] - at[0]), p - at[0]) >= 0 &&
+           dot(cross(normal, at[2] - at[1]), p - at[1]) >= 0 &&
            dot(cross(normal, at[0] - at[2]), p - at[2]) >= 0;
   }
 };
@@ -58,7 +58,8 @@ double distance_squared_across(const Corners& a, const Corners& b) {
         b.holds(a.at[i] + (a.at[next] - a.at[i]) * (height[i] / (height[i] - height[next]))))
       return 0;
     const double squared = height[i] * height[i];
-    if (area_squared > 0 && squared < least * area_squared && b.holds(a.at[i])) least = squared / area_squared;
+    if (area_squared > 0 && squared < least * area_squared && b.holds(a.at[i]))
+      least = squared / area_squared;
   }
   return least;
 }
@@ -130,9 +131,9 @@ double distance_to_surface(const kernels::Facet& facet, const kernels::TriangleB
   const Vec3d middle = (a + b + c) * (1.0 / 3);
   const double reach = std::sqrt(
       std::max({length_squared(a - middle), length_squared(b - middle), length_squared(c - middle)}));
-  TriangleMetric metric{facet, Corners(facet), {to_double(box.lower), to_double(box.upper)},
-                        middle,  reach * (1 + 1e-12),
-                        surface, limit * limit};
+  TriangleMetric metric{facet,        Corners(facet),      {to_double(box.lower), to_double(box.upper)},
+                        middle,       reach * (1 + 1e-12), surface,
+                        limit * limit};
   surface.walk(metric);
   return std::sqrt(metric.best_squared);
 }

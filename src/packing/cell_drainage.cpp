@@ -36,8 +36,7 @@ PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVo
                                        const CanOpenCell& can_open, const CanOpenWall& can_open_wall,
                                        Monitor& monitor) {
   CellDrainageTask task(model, cells, limits, request, can_open, monitor);
-  std::erase_if(task.windows,
-                [&](const CellWindow& window) { return !can_open_wall(window.channel.tube); });
+  std::erase_if(task.windows, [&](const CellWindow& window) { return !can_open_wall(window.channel.tube); });
   CellDraft draft = begin_draft(task);
   draft = open_where_asked(task, std::move(draft));
   draft = open_and_join(task, std::move(draft));

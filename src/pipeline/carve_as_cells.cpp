@@ -58,6 +58,7 @@ CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surfa
                            const ProcessChoice& process, const HollowOptions& options, Monitor& monitor) {
   constexpr double kLooser = 1.5;
   constexpr int kMostTries = 10;
+  if (options.drainage) require_resolvable_tubes(model.mesh, *options.drainage, options.tolerance);
   monitor.stage("shape");
   const Box3f box = bounding_box(model.mesh);
   const CellPlanes planes =

@@ -133,8 +133,7 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
   const DrainageRequest& request = *options.drainage;
   const double tolerance = options.tolerance;
   warn_of_wide_tubes(process, packing.limits.roof, request, monitor);
-  require_resolvable(model.mesh, request.channel_radius, tolerance, "a channel");
-  require_resolvable(model.mesh, request.hole_radius, tolerance, "an escape hole");
+  require_resolvable_tubes(model.mesh, request, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
@@ -170,8 +169,7 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   monitor.stage("drain");
   const DrainageRequest& request = *options.drainage;
   warn_of_wide_tubes(process, limits.roof, request, monitor);
-  require_resolvable(model.mesh, request.channel_radius, tolerance, "a channel");
-  require_resolvable(model.mesh, request.hole_radius, tolerance, "an escape hole");
+  require_resolvable_tubes(model.mesh, request, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
   const auto is_refused = [&](const Tube& tube) {
@@ -197,14 +195,20 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
     const auto& uncut = std::get<UncutTubes>(carved);
     const auto refuse = [&](const Tube& tube) {
       if (refused.size() >= kMostRefused)
-        throw FailureError(fmt::format("the surfaces at a tube near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut",
-                                       tube.start.x, tube.start.y, tube.start.z),
-                           "raise --tolerance, or give another --channel-diameter or --hole-diameter");
+        throw FailureError(
+            fmt::format("the surfaces at a tube near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut", tube.start.x,
+                        tube.start.y, tube.start.z),
+            "raise --tolerance, or give another --channel-diameter or --hole-diameter");
       refused.push_back(tube);
     };
     for (const std::size_t i : uncut.windows) refuse(planned.plan.channels[i].tube);
     for (const std::size_t i : uncut.holes) refuse(planned.plan.holes[i].tube);
   }
+}
+
+void require_resolvable_tubes(const Mesh& model, const DrainageRequest& request, double tolerance) {
+  require_resolvable(model, request.channel_radius, tolerance, "a channel");
+  require_resolvable(model, request.hole_radius, tolerance, "an escape hole");
 }
 
 void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits) {

@@ -49,6 +49,9 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
                          const PackingLimits& limits, const ProcessChoice& process,
                          const HollowOptions& options, double tolerance, Monitor& monitor);
 
+// Throws UsageError unless fp32 can hold the sides of tubes anywhere in the model.
+void require_resolvable_tubes(const Mesh& model, const DrainageRequest& request, double tolerance);
+
 // Throws UsageError if voids within the limits are too small for the tubes that are asked for.
 void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits);
 

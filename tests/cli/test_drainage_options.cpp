@@ -92,7 +92,7 @@ TEST(DrainageOptions, ProcessesThatTrapMaterialDrainByThemselves) {
     expect_drained(job, report, 1);
     EXPECT_EQ(origin_of(report, "channel")["origin"], std::string("default of ") + process);
     EXPECT_EQ(origin_of(report, "escape-hole")["value"], report["drainage"]["hole_diameter_mm"]);
-    EXPECT_GE(report["voids"]["count"].get<int>(), 30);
+    EXPECT_GE(report["voids"]["count"].get<int>(), std::string(process) == "metal" ? 30 : 10);
     // Metal prints no wide ceilings: voids have roofs, and wide holes have to be steep.
     const bool limits_ceilings = std::string(process) == "metal";
     EXPECT_EQ(contains(report["notices"].dump(), "escape holes of 5 mm lean"), limits_ceilings);
@@ -151,9 +151,9 @@ TEST(DrainageOptions, ModifiersHaveNothingToDrain) {
 
 TEST(DrainageOptions, HolesOpenWhereAskedAndInPrintOrientation) {
   const Job job;
-  const Json asked =
-      json_of(job.hollow(job.input("block.stl", block_of_50()),
-                         {"--process", "sla", "--escape-hole", "12,20,0", "--escape-hole", "38,20,40"}));
+  const Json asked = json_of(job.hollow(
+      job.input("block.stl", block_of_50()),
+      {"--process", "sla", "--shape", "spheres", "--escape-hole", "12,20,0", "--escape-hole", "38,20,40"}));
   // No others are made, whatever stays; the notice says how much.
   EXPECT_EQ(asked["drainage"]["sealed_cavities"], 0);
   EXPECT_GT(asked["drainage"]["pools"]["after_both_percent"].get<double>(), 1);
@@ -230,7 +230,7 @@ TEST(DrainageOptions, WrongInput) {
   refused({"--up", "0,0,0"}, kUsage, {"--up", "no direction"});
   refused({"--no-drain", "--escape-hole", "12,20,0"}, kUsage,
           {"--escape-hole is for voids that drain", "--drain"});
-  refused({"--hole-diameter", "18"}, kNothingToRemove, {"18 mm", "--hole-diameter"});
+  refused({"--shape", "spheres", "--hole-diameter", "18"}, kNothingToRemove, {"18 mm", "--hole-diameter"});
 }
 
 // A place on the surface from which no tube reaches a void; and one across an edge, which is cut like any

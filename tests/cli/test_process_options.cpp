@@ -152,7 +152,7 @@ TEST(ProcessOptions, WhatStandsIsSeenInTheDirectionOfThePrint) {
 
 TEST(ProcessOptions, APresetSetsItsLimitsAndSaysThatSealedVoidsTrapMaterial) {
   const Job job;
-  const Json report = report_of(job, {"--process", "sla", "--no-drain"});
+  const Json report = report_of(job, {"--process", "sla", "--no-drain", "--shape", "spheres"});
   EXPECT_EQ(report["limits"]["wall_mm"], 2.0);
   EXPECT_EQ(report["limits"]["gap_mm"], 1.0);
   EXPECT_EQ(report["limits"]["min_radius_mm"], 2.5);

@@ -113,8 +113,9 @@ PlannedCellDrainage plan(const Mesh& model, const CellVoids& cells,
                          const PackingLimits& limits = limits_of(), const CanOpenCell& can_open = kAlways) {
   const SurfaceIndex surface(model);
   Monitor monitor;
-  return plan_cell_drainage({surface, surface.winding()}, cells, limits, request, can_open, [](const Tube&) { return true; },
-                            monitor);
+  return plan_cell_drainage(
+      {surface, surface.winding()}, cells, limits, request, can_open, [](const Tube&) { return true; },
+      monitor);
 }
 
 double distance_to(const Mesh& mesh, const Segment& segment) {
