@@ -106,14 +106,13 @@ std::string measure_processes(const std::filesystem::path& model, const std::fil
   Table table({"process", "voids", "not made", "void volume, mm3", "% of what is deeper than the wall",
                "the same sealed, %", "widest ceiling, mm", "drained", "escape holes", "trapped, %", "job, s",
                "sealed, s", "ratio"});
-  for (const Process& process : processes()) {
-    const HollowOptions options = options_for(model, folder, choice_of(process));
+  const auto add_row = [&](const std::string& name, const HollowOptions& options) {
     const Jobs jobs = run_jobs(options);
     const double bound = deeper_than(mesh, options.packing.limits().wall);
     const OutputFacts& output = jobs.asked.output;
     const auto& drainage = jobs.asked.drainage;
     table.add(
-        {process.name, fmt::format("{}", output.void_count),
+        {name, fmt::format("{}", output.void_count),
          drainage ? fmt::format("{}", drainage->dropped.count()) : "-",
          fmt::format("{:.0f}", output.volume_removed), percent_of_bound(jobs.asked, bound),
          percent_of_bound(jobs.sealed, bound), widest_ceiling(output), drainage ? "yes" : "sealed",
@@ -121,6 +120,15 @@ std::string measure_processes(const std::filesystem::path& model, const std::fil
          drainage ? hundredths(100 * drainage->plan.pools.after_both / drainage->plan.pools.total) : "-",
          hundredths(jobs.asked_seconds), hundredths(jobs.sealed_seconds),
          hundredths(jobs.asked_seconds / jobs.sealed_seconds)});
+  };
+  for (const Process& process : processes()) {
+    HollowOptions options = options_for(model, folder, choice_of(process));
+    add_row(process.name + " spheres", options);
+    if (process.limits.contains(Limit::bridge)) continue;  // cells have no roofs
+    options.packing.process = sized_for_cells(std::move(options.packing.process), std::nullopt);
+    options.cells = {.fillet = drainage_of(options.packing.process)->channel_radius};
+    options.tolerance = 0.1;
+    add_row(process.name + " cells", options);
   }
   fmt::print("\n");
   return heading + table.markdown();

@@ -224,7 +224,9 @@ std::string to_json(const HollowReport& report) {
                     {"triangles", output.triangle_count},
                     {"outer_triangles", output.outer_triangle_count},
                     {"void_triangles", output.void_triangle_count}};
-  json["voids"] = {{"count", output.void_count},
+  json["voids"] = {{"shape", report.cells ? "cells" : "spheres"},
+                   {"fillet_mm", report.cells ? Json(report.cells->fillet) : Json(nullptr)},
+                   {"count", output.void_count},
                    {"min_radius_mm", output.smallest_radius},
                    {"max_radius_mm", output.largest_radius},
                    {"tolerance_used_mm", report.tolerance_used},

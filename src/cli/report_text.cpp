@@ -98,10 +98,9 @@ std::string radii(double smallest, double largest) {
   return from == to ? to + " mm" : from + " to " + to + " mm";
 }
 
-void add_packing(Lines& lines, const char* label, std::size_t count, const std::string& radii,
+void add_packing(Lines& lines, const char* label, const std::string& shapes, const std::string& radii,
                  const std::string& method, double density, const DeviceUse& device) {
-  lines.add(label, "{}, radius {}; {} packing, {:.2f} % of the model", count_of(count, "sphere", "spheres"),
-            radii, method, 100 * density);
+  lines.add(label, "{}, radius {}; {} packing, {:.2f} % of the model", shapes, radii, method, 100 * density);
   lines.add("packed on", "{}: {}", device.name, device.reason);
 }
 
@@ -243,8 +242,11 @@ std::string to_text(const HollowReport& report) {
   Lines lines;
   add_input(lines, report.input);
   add_limits(lines, report.process);
-  add_packing(lines, "voids", output.void_count, radii(output.smallest_radius, output.largest_radius),
-              report.method, report.packing_density, report.packing_device);
+  add_packing(lines, "voids",
+              report.cells ? count_of(output.void_count, "cell", "cells") + " round spheres"
+                           : count_of(output.void_count, "sphere", "spheres"),
+              radii(output.smallest_radius, output.largest_radius), report.method, report.packing_density,
+              report.packing_device);
   add_volume(lines, report);
   add_clearances(lines, output.clearances, report.limits);
   add_ceilings(lines, report);
@@ -261,7 +263,9 @@ std::string to_text(const HollowReport& report) {
   }
   lines.add("tolerance", "{:.3g} mm; void surfaces are at most {:.3g} mm inside their {}",
             report.tolerance_used, output.void_deviation,
-            output.roof_count > 0 ? "spheres and roofs" : "spheres");
+            report.cells            ? "cells"
+            : output.roof_count > 0 ? "spheres and roofs"
+                                    : "spheres");
   add_stages(lines, report.stages);
   return lines.take();
 }
@@ -273,8 +277,8 @@ std::string to_text(const PackReport& report) {
   Lines lines;
   add_input(lines, report.input);
   add_limits(lines, report.process);
-  add_packing(lines, "spheres", spheres.size(), radii(smallest->radius, largest->radius), report.method,
-              report.density, report.packing.device);
+  add_packing(lines, "spheres", count_of(spheres.size(), "sphere", "spheres"),
+              radii(smallest->radius, largest->radius), report.method, report.density, report.packing.device);
   if (report.clearances) add_clearances(lines, *report.clearances, report.packing.limits);
   const PackingStatistics& statistics = report.packing.statistics;
   lines.add("places",
