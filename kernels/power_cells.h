@@ -221,7 +221,7 @@ struct Polytope {
   }
 
   // The vertex of three planes; false if they are no corner of a polytope.
-  AERATE_HD bool set_vertex(std::uint32_t i, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  AERATE_HD bool set_vertex(std::uint32_t i, std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     const Vec3d across = cross(planes[b].normal, planes[c].normal);
     const double volume = dot(planes[a].normal, across);
     if (!(volume > 0)) return false;

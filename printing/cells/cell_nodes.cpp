@@ -48,7 +48,7 @@ class Filler {
     if (behind + reach < nodes_.ball_radius) return;
     // Placing vertices asks whether the surface is near some nodes beyond what limits the balls.
     const double most = nodes_.deepest + 1.5 * box.lattice.spacing;
-    double below = kFar;
+    auto below = static_cast<double>(kFar);
     // What the block about this one tells of the surface may do for a node.
     const double at_least = known.distance - length(middle - known.middle) - region_.wall();
     if (side == 1 && known.is_inside && at_least >= std::min(behind, nodes_.deepest)) {
@@ -103,10 +103,14 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
   const double reach = side / 2 * kRootOf3;
   const Vec3d half{side / 2, side / 2, side / 2};
   Box3d box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (double z = within.lower.z + half.z; z < within.upper.z + half.z; z += side) {
-    for (double y = within.lower.y + half.y; y < within.upper.y + half.y; y += side) {
-      for (double x = within.lower.x + half.x; x < within.upper.x + half.x; x += side) {
-        const Vec3d middle{x, y, z};
+  const Vec3d extent = within.upper - within.lower;
+  const auto blocks = [side](double length) {
+    return static_cast<std::int32_t>(std::ceil(length / side)) + 1;
+  };
+  for (std::int32_t k = 0; k < blocks(extent.z); ++k) {
+    for (std::int32_t j = 0; j < blocks(extent.y); ++j) {
+      for (std::int32_t i = 0; i < blocks(extent.x); ++i) {
+        const Vec3d middle = within.lower + half + Vec3d{side * i, side * j, side * k};
         if (region.behind_planes(middle) + reach < ball_radius) continue;
         const double needed = region.wall() + ball_radius;
         const SurfaceNearby near = region.surface_near(middle, needed + reach, kNone);

@@ -96,7 +96,7 @@ class Roller {
       ++near;
     }
     const std::uint32_t facet = nodes_.facet[node];
-    const double below = nodes_.surface_depth[node];
+    const auto below = static_cast<double>(nodes_.surface_depth[node]);
     if (facet != kNone && below < nodes_.deepest + spacing) {
       const Vec3d foot = region_.nearest_on(facet, at);
       const Vec3d away = normalised(at - foot);

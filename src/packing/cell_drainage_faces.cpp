@@ -172,7 +172,9 @@ bool DiscPlaces::fits(Flat at) const {
 
 // As far as it fits in the direction of y, by less than a step.
 Flat DiscPlaces::slid(Flat from, double direction) const {
-  for (double way = step_ / 2; way > step_ / 100; way /= 2) {
+  constexpr int kHalvings = 6;  // to less than a hundredth of a step
+  double way = step_ / 2;
+  for (int i = 0; i < kHalvings; ++i, way /= 2) {
     const Flat next{from.x, from.y + direction * way};
     if (fits(next)) from = next;
   }

@@ -85,7 +85,7 @@ double FreeFlow::most() {
   double flow = 0;
   while (level()) {
     next_.assign(leave_.size(), 0);
-    while (const double amount = push()) flow += amount;
+    for (double amount = push(); amount > 0; amount = push()) flow += amount;
   }
   return flow;
 }

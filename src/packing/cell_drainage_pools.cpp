@@ -85,15 +85,15 @@ HollowFlood CellPools::flood(const Passages& passages, std::size_t orientation, 
       for (const Mouth& mouth : passage.mouths) {
         if (mouth.into != kNone) is_reached[mouth.into] = true;
       }
-      for_each_mouth(*this, passage, orientation, [&](std::uint32_t v) {
-        if (!is_done[v]) open.push({height, -kInfinity, v, at});
+      for_each_mouth(*this, passage, orientation, [&, from = at, level = height](std::uint32_t v) {
+        if (!is_done[v]) open.push({level, -kInfinity, v, from});
       });
     } else {
       const std::uint32_t in = void_of_[orientation][at], first = first_[orientation][in];
       const Hollows& own_hollows = voids_[in].in(orientation);
       const std::uint32_t hollow = at - first;
-      const auto go = [&](std::uint32_t next, double rim) {
-        if (!is_done[first + next]) open.push({std::max(height, rim), -kInfinity, first + next, at});
+      const auto go = [&, from = at, level = height](std::uint32_t next, double rim) {
+        if (!is_done[first + next]) open.push({std::max(level, rim), -kInfinity, first + next, from});
       };
       if (own_hollows.parent[hollow] != kNone) go(own_hollows.parent[hollow], own_hollows.rim[hollow]);
       for (const std::uint32_t child : own_hollows.children[hollow]) go(child, own_hollows.rim[child]);

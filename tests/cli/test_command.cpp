@@ -25,7 +25,8 @@ TEST(Command, HelpNamesUnitsDefaultsAndExitCodes) {
     EXPECT_TRUE(contains(program.out, part));
   const ProcessResult hollow = run({AERATE_EXECUTABLE, "hollow", "--help"});
   EXPECT_EQ(hollow.exit_code, 0);
-  for (const char* part : {"--wall MM=1.2", "--gap MM=0.9", "--min-radius MM=0.62", "--tolerance MM=0.05"})
+  for (const char* part :
+       {"--wall MM=1.2", "--gap MM=0.9", "--min-radius MM=0.62", "default 0.05, of cells 0.1"})
     EXPECT_TRUE(contains(hollow.out, part));
   EXPECT_EQ(hollow.err, "");
 }
