@@ -85,7 +85,11 @@ double FreeFlow::most() {
   double flow = 0;
   while (level()) {
     next_.assign(leave_.size(), 0);
-    for (double amount = push(); amount > 0; amount = push()) flow += amount;
+    while (true) {
+      const double amount = push();
+      if (!(amount > 0)) break;
+      flow += amount;
+    }
   }
   return flow;
 }
