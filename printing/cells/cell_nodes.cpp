@@ -107,6 +107,10 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
   const auto blocks = [side](double length) {
     return static_cast<std::int32_t>(std::ceil(length / side)) + 1;
   };
+  // Looking at so many takes a minute, and what is found is too large.
+  constexpr double kMostBlocks = 4e6;
+  if (extent.x * extent.y * extent.z > kMostBlocks * side * side * side)
+    throw std::length_error("a cell has too many blocks of lattice nodes");
   for (std::int32_t k = 0; k < blocks(extent.z); ++k) {
     for (std::int32_t j = 0; j < blocks(extent.y); ++j) {
       for (std::int32_t i = 0; i < blocks(extent.x); ++i) {
@@ -131,7 +135,7 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
                         const NodeLattice& lattice) {
   constexpr double kBlocksPerCell = 6;
-  constexpr std::size_t kMostNodes = std::size_t{1} << 28;
+  constexpr std::size_t kMostNodes = std::size_t{1} << 26;
   const double spacing = lattice.spacing;
   CellNodes nodes;
   nodes.ball_radius = ball_radius;
@@ -153,7 +157,7 @@ CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ba
   box.count_x = count(balls->upper.x, lattice.origin.x, box.x);
   box.count_y = count(balls->upper.y, lattice.origin.y, box.y);
   box.count_z = count(balls->upper.z, lattice.origin.z, box.z);
-  if (box.size() > kMostNodes) throw std::length_error("a cell has more than 2^28 lattice nodes");
+  if (box.size() > kMostNodes) throw std::length_error("a cell has more than 2^26 lattice nodes");
   nodes.depth.assign(box.size(), -1.F);
   nodes.surface_depth.assign(box.size(), kFar);
   nodes.facet.assign(box.size(), kNone);

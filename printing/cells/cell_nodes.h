@@ -59,7 +59,7 @@ struct CellNodes {
 // Looks at the nodes of a lattice in `within`, which holds the cell. Blocks of nodes are told from their middles
 // where the region's depth allows it, so that the time goes with the region's surface. The box that is returned
 // has two nodes without a ball on each side, and room for balls. Throws std::length_error if there are more than
-// 2^28 of them.
+// 2^26 of them.
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
                         const NodeLattice& lattice);
 
