@@ -189,8 +189,8 @@ std::array<bool, 256> make_well_composed() {
   return result;
 }
 
-// Takes nodes out of the void until every cube is well-composed; those with a ball of their own stay, since
-// what surrounds them is covered.
+// Takes nodes out of the void until every cube is well-composed: those without a ball of their own, or, where nodes
+// with one meet diagonally since the nodes between them were taken out, these.
 void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_void) {
   static const std::array<bool, 256> kWellComposed = make_well_composed();
   const NodeBox& box = nodes.box;
@@ -204,11 +204,12 @@ void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_vo
           for (unsigned corner = 0; corner < 8; ++corner)
             set |= (is_void[corners[corner]] != 0 ? 1U : 0U) << corner;
           if (kWellComposed[set]) continue;
+          const bool has_others = std::ranges::any_of(
+              corners, [&](std::size_t node) { return is_void[node] != 0 && !nodes.has_ball(node); });
           for (const std::size_t node : corners) {
-            if (is_void[node] == 0 || nodes.has_ball(node)) continue;
-            is_void[node] = 0;
-            changes = true;
+            if (!has_others || !nodes.has_ball(node)) is_void[node] = 0;
           }
+          changes = true;
         }
       }
     }

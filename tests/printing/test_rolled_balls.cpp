@@ -1,0 +1,61 @@
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "core/surface_index.h"
+#include "printing/cells/cell_nodes.h"
+#include "printing/cells/rolled_balls.h"
+#include "tests/support/shapes.h"
+
+namespace aerate {
+namespace {
+
+constexpr std::int32_t kCount = 8;
+
+// Nodes of a lattice of 1 mm of which no one has a ball.
+CellNodes solid_nodes(double ball_radius) {
+  CellNodes nodes;
+  nodes.box.lattice = {.origin = {-4, -4, -4}, .spacing = 1};
+  nodes.box.count_x = nodes.box.count_y = nodes.box.count_z = kCount;
+  nodes.ball_radius = ball_radius;
+  nodes.deepest = ball_radius + 2;
+  nodes.depth.assign(nodes.box.size(), -1.F);
+  nodes.surface_depth.assign(nodes.box.size(), 1e9F);
+  nodes.facet.assign(nodes.box.size(), kNone);
+  return nodes;
+}
+
+// The void's nodes of those that have a ball which holds no other node.
+std::vector<std::size_t> void_of(const std::vector<std::array<std::int32_t, 3>>& places) {
+  constexpr float kRadius = 0.2F;
+  CellNodes nodes = solid_nodes(kRadius);
+  for (const auto& [i, j, k] : places) nodes.depth[nodes.box.index(i, j, k)] = kRadius;
+  const SurfaceIndex surface(test::make_box({-20, -20, -20}, {20, 20, 20}));
+  const CellRegion region({}, surface, 2);
+  const OpenedCell opened = open_cell(region, nodes, {{0, 0, 0}, 0.1, SphereKind::adaptive});
+  std::vector<std::size_t> result;
+  for (std::size_t node = 0; node < opened.is_void.size(); ++node)
+    if (opened.is_void[node] != 0) result.push_back(node);
+  return result;
+}
+
+}  // namespace
+
+TEST(RolledBalls, NodesSideBySideAreAVoid) {
+  EXPECT_EQ(void_of({{3, 3, 3}, {4, 3, 3}}).size(), 2);
+}
+
+TEST(RolledBalls, BallsThatOnlyMeetDiagonallyAreNoVoid) {
+  EXPECT_TRUE(void_of({{3, 3, 3}, {4, 4, 3}}).empty());
+  EXPECT_TRUE(void_of({{3, 3, 3}, {4, 4, 4}}).empty());
+}
+
+TEST(RolledBalls, WhatIsBesideADiagonalStays) {
+  // (5, 3, 3) hangs together with (5, 4, 3) alone, which meets (4, 5, 3) diagonally.
+  const NodeBox box = solid_nodes(1).box;
+  EXPECT_EQ(void_of({{5, 3, 3}, {5, 4, 3}, {4, 5, 3}}), std::vector<std::size_t>{box.index(5, 3, 3)});
+}
+
+}  // namespace aerate
