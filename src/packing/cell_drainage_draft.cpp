@@ -11,7 +11,7 @@
 #include "core/disjoint_sets.h"
 #include "core/segment_distance.h"
 #include "kernels/constants.h"
-#include "packing/hole_places.h"
+#include "packing/hole_rules.h"
 #include "packing/placed_tubes.h"
 
 namespace aerate {

@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <numbers>
 #include <queue>
 #include <tbb/parallel_for.h>
 #include <utility>
 
-#include "core/error.h"
 #include "kernels/constants.h"
+#include "packing/hole_rules.h"
 
 namespace aerate {
 namespace {
-
-constexpr int kDirections = 64;
-
-// Weights of what makes a place good, as in HolePlaces.
-constexpr double kShowingWeight = 0.1;
-constexpr double kLengthWeight = 0.2;
-constexpr double kLeastShowing = 0.139;  // of places that face down and backwards
 
 // Nodes from which ways are looked for at once.
 constexpr std::size_t kAtOnce = 32;
@@ -27,19 +19,11 @@ constexpr std::size_t kAtOnce = 32;
 // Of the nodes that holes which were asked for may start from, so many of each void are looked at.
 constexpr std::size_t kMostStarts = 256;
 
-// Points spread evenly over the half of the unit sphere about `axis`, which is the first of them.
-std::vector<Vec3d> directions_about(Vec3d axis) {
-  const TubeFrame frame = frame_of({{0, 0, 0}, axis, 1}, {0, 0, 1});
-  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::vector<Vec3d> directions{axis};
-  for (int i = 0; i < kDirections; ++i) {
-    const double along = 1 - (i + 0.5) / kDirections;
-    const double across = std::sqrt(1 - along * along);
-    directions.push_back(axis * along +
-                         (frame.down * std::cos(golden * i) + frame.across * std::sin(golden * i)) * across);
-  }
-  // Level ones, for tubes out of the side of a void.
+// Level ones besides, for tubes out of the side of a void.
+std::vector<Vec3d> directions_and_level_ones(Vec3d axis) {
   constexpr int kLevel = 24;
+  const TubeFrame frame = frame_of({{0, 0, 0}, axis, 1}, {0, 0, 1});
+  std::vector<Vec3d> directions = directions_about(axis);
   for (int i = 0; i < kLevel; ++i) {
     const double angle = 2 * std::numbers::pi * i / kLevel;
     directions.push_back(frame.down * std::cos(angle) + frame.across * std::sin(angle));
@@ -59,7 +43,7 @@ CellHolePlaces::CellHolePlaces(const CellVoids& cells, const std::vector<VoidHol
       outward_(outward),
       ways_out_(hollows, limits, radius, surfaces, outward) {
   const Vec3d up = limits.roof.up;
-  directions_ = {directions_about(-up), directions_about(up)};
+  directions_ = {directions_and_level_ones(-up), directions_and_level_ones(up)};
   // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
   if (limits.roof.limits_ceilings()) {
     std::vector<Vec3d>& high = directions_[kUpsideDown];
@@ -188,16 +172,7 @@ std::optional<CellHole> CellHolePlaces::best(std::span<const Basin::Part> hollow
 
 std::optional<CellHole> CellHolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> voids,
                                                    const Accept& accept) const {
-  const Vec3d on_surface = surfaces_.model().nearest_on_surface(place);
-  const double off = length(on_surface - place);
-  if (off > 2 * ways_out_.radius()) {
-    const auto to_text = [](Vec3d p) { return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", p.x, p.y, p.z); };
-    const bool outside = outward_.winding_number(place) == 0;
-    throw UsageError(fmt::format("an escape hole is asked for at {}, which is {} mm {}", to_text(place),
-                                 fmt::format("{:f}", off).substr(0, 5),
-                                 outside ? "outside the model" : "inside the model, away from its surface"),
-                     "the surface is nearest at " + to_text(on_surface));
-  }
+  const Vec3d on_surface = on_surface_near(place, 2 * ways_out_.radius(), surfaces_.model(), outward_);
   Ways ways;
   for (const std::uint32_t from : voids) {
     const VoidNodes& nodes = hollows_[from].nodes();

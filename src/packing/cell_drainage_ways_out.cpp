@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "kernels/constants.h"
-#include "packing/hole_places.h"
+#include "packing/hole_rules.h"
 
 namespace aerate {
 namespace {
-
-// The sine of 30 degrees: no surface is met flatter than that.
-constexpr double kLeastSlope = 0.5;
 
 // The tube starts so far before its side leaves the void, mm, and its two rims are as far apart along it.
 constexpr double kClearance = 0.25;
@@ -30,14 +27,6 @@ WaysOut::WaysOut(const std::vector<VoidHollows>& hollows, const PackingLimits& l
       longest_(longest_hole({.channel_radius = radius, .hole_radius = radius, .escape_holes = {}}, limits)),
       surfaces_(surfaces),
       outward_(outward) {}
-
-double WaysOut::showing(Vec3d place) const {
-  const Vec3d up = limits_.roof.up;
-  const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d back = normalised(cross(up, side));
-  const Vec3d normal = surfaces_.model().normal_near(place);
-  return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
-}
 
 // False if part of the tube's side does not begin in the void, or leaves it too obliquely.
 bool WaysOut::leave_void(const Tube& tube, CellWayOut& way) const {
@@ -73,19 +62,14 @@ std::optional<CellWayOut> WaysOut::follow(std::uint32_t from, Vec3d inside, Vec3
   way.first -= skipped;
   way.last -= skipped;
   way.reached -= skipped;
-  way.showing = showing(tube.end);
+  way.showing = showing(surfaces_.model().normal_near(tube.end), limits_.roof.up);
   return way;
 }
 
 bool WaysOut::is_sound(const CellWayOut& way) const {
   const Tube& tube = way.hole.tube;
   const Vec3d axis = direction_of(tube);
-  const double needed = radius_ + limits_.wall;
-  for (const double beyond : {radius_, 2 * radius_}) {
-    const Vec3d p = tube.end + axis * beyond;
-    if (surfaces_.model().to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
-    if (outward_.winding_number(p) != 0) return false;
-  }
+  if (!leads_outside(tube, limits_.wall, surfaces_.model(), outward_)) return false;
   double first_out = kInfinity;
   for (const Vec3d start : lines_round(tube.start, tube, limits_.roof.up)) {
     const auto out = surfaces_.model().first_hit(start, axis, 2 * longest_);

@@ -63,7 +63,6 @@ class WaysOut {
 
  private:
   bool leave_void(const Tube& tube, CellWayOut& way) const;
-  double showing(Vec3d place) const;
 
   const std::vector<VoidHollows>& hollows_;
   PackingLimits limits_;

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <tbb/parallel_for.h>
 
-#include "core/error.h"
 #include "kernels/constants.h"
+#include "packing/hole_rules.h"
 #include "packing/placed_tubes.h"
 #include "packing/pools.h"
 #include "packing/tube_through.h"
@@ -17,13 +15,8 @@
 namespace aerate {
 namespace {
 
-// The longest hole, in its diameters and walls together.
-constexpr double kLongestInDiameters = 3;
-constexpr double kLongestInWalls = 3;
-
-// Voids that are looked at for one hole, and directions from each.
+// Voids that are looked at for one hole.
 constexpr std::size_t kMostVoids = 48;
-constexpr int kDirections = 64;
 
 // Places of the axis in each direction.
 constexpr std::size_t kPoints = 3;
@@ -32,34 +25,7 @@ constexpr std::size_t kPoints = 3;
 // the axes of the hole and of a channel: the two then open into it at 113 degrees from each other or less.
 constexpr double kRoomyShare = 0.6;
 
-// Weights of what makes a place good, in heights of the network: a tenth of it is given for a place that does
-// not show.
-constexpr double kShowingWeight = 0.1;
-constexpr double kLengthWeight = 0.2;  // a millimetre of tube for each millimetre of height
-
-// Near its outer end a tube is nearer to the surface than the wall. It comes up to it no flatter than this:
-// the sine of 30 degrees.
-constexpr double kLeastSlope = 0.5;
-
-// Points spread evenly over the half of the unit sphere about `axis`, which is the first of them.
-std::vector<Vec3d> directions_about(Vec3d axis) {
-  const TubeFrame frame = frame_of({{0, 0, 0}, axis, 1}, {0, 0, 1});
-  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::vector<Vec3d> directions{axis};
-  for (int i = 0; i < kDirections; ++i) {
-    const double along = 1 - (i + 0.5) / kDirections;
-    const double across = std::sqrt(1 - along * along);
-    directions.push_back(axis * along +
-                         (frame.down * std::cos(golden * i) + frame.across * std::sin(golden * i)) * across);
-  }
-  return directions;
-}
-
 }  // namespace
-
-double longest_hole(const DrainageRequest& request, const PackingLimits& limits) {
-  return kLongestInDiameters * 2 * request.hole_radius + kLongestInWalls * limits.wall;
-}
 
 HolePlaces::HolePlaces(const kernels::WindingView& outward, std::span<const VoidShape> voids,
                        const PackingLimits& limits, const DrainageRequest& request,
@@ -74,15 +40,6 @@ bool HolePlaces::reach_surface(EscapeHole& hole) const {
   return hit.has_value();
 }
 
-double HolePlaces::showing(Vec3d place) const {
-  const Vec3d up = limits_.roof.up;
-  const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d across = cross(up, side);
-  const Vec3d back = normalised(across);
-  const Vec3d normal = clearance_.normal_near(place);
-  return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
-}
-
 bool HolePlaces::is_sound(const EscapeHole& hole) {
   const Vec3d start = hole.tube.start, end = hole.tube.end;
   const auto [known, is_new] = sound_.try_emplace(
@@ -93,15 +50,8 @@ bool HolePlaces::is_sound(const EscapeHole& hole) {
 
 bool HolePlaces::look_whether_sound(const EscapeHole& hole) const {
   const Tube& tube = hole.tube;
-  const Vec3d axis = direction_of(tube);
-  const double needed = tube.radius + limits_.wall;
-  // Outside there has to be room, as wide as the hole.
-  for (const double beyond : {tube.radius, 2 * tube.radius}) {
-    const Vec3d p = tube.end + axis * beyond;
-    if (clearance_.to_surface(p, needed) < kLeastSlope * beyond / 2) return false;
-    if (outward_.winding_number(p) != 0) return false;
-  }
-  return clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) &&
+  return leads_outside(tube, limits_.wall, clearance_, outward_) &&
+         clearance_.keeps_gap_to_voids(tube, hole.from, hole.from) &&
          clearance_.keeps_wall_on_way_out(tube, kLeastSlope);
 }
 
@@ -239,7 +189,7 @@ void HolePlaces::look_at(Place& place, Vec3d down) const {
   const Tube& tube = place.hole.tube;
   if (reach_surface(place.hole)) {
     place.sill = sill_of_hole(place.hole, voids_[place.hole.from], -down);
-    place.showing = showing(tube.end);
+    place.showing = showing(clearance_.normal_near(tube.end), limits_.roof.up);
     place.length = length(tube.end - tube.start);
   } else {
     place.sill = kInfinity;
@@ -247,16 +197,7 @@ void HolePlaces::look_at(Place& place, Vec3d down) const {
 }
 
 std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> voids) const {
-  const Vec3d on_surface = clearance_.nearest_on_surface(place);
-  const double off = length(on_surface - place);
-  if (off > 2 * request_.hole_radius) {
-    const auto to_text = [](Vec3d p) { return fmt::format("({:.2f}, {:.2f}, {:.2f}) mm", p.x, p.y, p.z); };
-    const bool outside = outward_.winding_number(place) == 0;
-    throw UsageError(fmt::format("an escape hole is asked for at {}, which is {} mm {}", to_text(place),
-                                 fmt::format("{:f}", off).substr(0, 5),
-                                 outside ? "outside the model" : "inside the model, away from its surface"),
-                     "the surface is nearest at " + to_text(on_surface));
-  }
+  const Vec3d on_surface = on_surface_near(place, 2 * request_.hole_radius, clearance_, outward_);
   std::vector<EscapeHole> holes;
   for (const std::uint32_t from : voids) {
     const VoidShape& shape = voids_[from];

@@ -14,12 +14,10 @@
 #include "core/drainage.h"
 #include "core/packing.h"
 #include "kernels/winding.h"
+#include "packing/hole_rules.h"
 #include "packing/tube_clearance.h"
 
 namespace aerate {
-
-// No hole is longer than this, mm.
-double longest_hole(const DrainageRequest& request, const PackingLimits& limits);
 
 // Where the surface of a model can be opened. What was found is remembered: the same voids are looked at for
 // many plans.
@@ -76,8 +74,6 @@ class HolePlaces {
   bool is_sound(const EscapeHole& hole);
 
  private:
-  static constexpr double kLeastShowing = 0.139;  // of places that face down and backwards
-
   // Before it is looked at, `sill`, `showing` and `length` are what they are at least.
   struct Place {
     EscapeHole hole;
@@ -97,7 +93,6 @@ class HolePlaces {
   bool reach_surface(EscapeHole& hole) const;
   std::optional<Vec3d> start_inside(const VoidShape& shape, Vec3d direction, Vec3d down,
                                     std::size_t point) const;
-  double showing(Vec3d place) const;
 
   std::span<const VoidShape> voids_;
   PackingLimits limits_;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "core/drainage.h"
+#include "core/packing.h"
+#include "kernels/winding.h"
+#include "packing/tube_clearance.h"
+
+// What is asked of every escape hole, and what makes one better than another: the same for spheres and cells.
+
+namespace aerate {
+
+// No hole is longer than this, mm.
+double longest_hole(const DrainageRequest& request, const PackingLimits& limits);
+
+// Near its outer end a tube is nearer to the surface than the wall. It comes up to it no flatter than this:
+// the sine of 30 degrees.
+inline constexpr double kLeastSlope = 0.5;
+
+// Is there room beyond its end, as wide as the hole, outside of every shell? `outward`: see DrainableModel.
+bool leads_outside(const Tube& tube, double wall, const TubeClearance& clearance,
+                   const kernels::WindingView& outward);
+
+// Weights of what makes a place good, in heights of what is opened: a tenth of it is given for a place that
+// does not show.
+inline constexpr double kShowingWeight = 0.1;
+inline constexpr double kLengthWeight = 0.2;  // a millimetre of tube for each millimetre of height
+
+// How much a surface shows that has this normal, to 1: least where it faces down and backwards as printed
+// (back is +y where up is +z).
+double showing(Vec3d normal, Vec3d up);
+inline constexpr double kLeastShowing = 0.139;
+
+// Directions in which holes are looked for: spread evenly over the half of the unit sphere about `axis`, which
+// is the first of them.
+std::vector<Vec3d> directions_about(Vec3d axis);
+
+// The point of the surface nearest to where a hole was asked for. Throws UsageError if that is farther away
+// than `within` mm.
+Vec3d on_surface_near(Vec3d place, double within, const TubeClearance& clearance,
+                      const kernels::WindingView& outward);
+
+}  // namespace aerate
