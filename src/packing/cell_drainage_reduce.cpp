@@ -9,10 +9,7 @@
 namespace aerate {
 namespace {
 
-// More holes at most, each for a pool of at least this share of the voids' volume, and places for pools that
-// are looked for before none is found to be worth it.
-constexpr int kMostMoreHoles = 24;
-constexpr double kPoolWorthHole = 0.003;
+// Pools for which a place is looked for before none is found to be worth it.
 constexpr int kMostPoolsTried = 6;
 
 // Windows beside the tree, and holes, lower what stays by this share of the volume, or are not made.

@@ -33,6 +33,10 @@ struct PlannedDrainage {
 // A network of its own is opened if it holds at least this share of the voids' volume: its two holes show.
 inline constexpr double kLeastNetworkShare = 0.05;
 
+// More holes for pools at most, each for one of at least this share of the voids' volume.
+inline constexpr int kMostMoreHoles = 24;
+inline constexpr double kPoolWorthHole = 0.003;
+
 // Can the surface be opened for this hole? Its `from` counts the packing.
 using CanOpen = std::function<bool(const EscapeHole& hole)>;
 

@@ -10,10 +10,6 @@
 namespace aerate {
 namespace {
 
-// More holes at most, each for a pool of at least this share of the voids' volume.
-constexpr int kMostMoreHoles = 24;
-constexpr double kPoolWorthHole = 0.003;
-
 // More channels than the tree's have to reduce what stays to this share of it.
 constexpr double kLeastGain = 0.7;
 
