@@ -87,6 +87,11 @@ void require_resolvable(const Mesh& model, double radius, double tolerance, cons
       "move the model nearer to the origin, raise --tolerance, or give a larger diameter");
 }
 
+bool is_among(std::span<const Tube> tubes, const Tube& tube) {
+  return std::ranges::any_of(
+      tubes, [&](const Tube& other) { return other.start == tube.start && other.end == tube.end; });
+}
+
 // The holes that were not cut, or not cut well.
 std::vector<std::size_t> failed_holes(const std::variant<OuterWithHoles, UncutHoles>& cut,
                                       const DrainagePlan& plan) {
@@ -137,11 +142,8 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
-    const auto is_it = [&](const Tube& tube) {
-      return tube.start == hole.tube.start && tube.end == hole.tube.end;
-    };
     const WayOut way{hole.tube, packing.spheres[hole.from]};
-    return std::none_of(refused.begin(), refused.end(), is_it) &&
+    return !is_among(refused, hole.tube) &&
            may_be_cut(model.mesh, surface, way, packing.limits.roof, tolerance) &&
            !is_crossed_near(model.mesh, surface, hole.tube);
   };
@@ -172,15 +174,11 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   require_resolvable_tubes(model.mesh, request, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
-  const auto is_refused = [&](const Tube& tube) {
-    return std::ranges::any_of(
-        refused, [&](const Tube& other) { return other.start == tube.start && other.end == tube.end; });
-  };
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
-    return !is_refused(tube) && may_be_cut(model.mesh, surface, cells.voids[from], tube, tolerance) &&
+    return !is_among(refused, tube) && may_be_cut(model.mesh, surface, cells.voids[from], tube, tolerance) &&
            !is_crossed_near(model.mesh, surface, tube);
   };
-  const auto can_open_wall = [&](const Tube& window) { return !is_refused(window); };
+  const auto can_open_wall = [&](const Tube& window) { return !is_among(refused, window); };
   while (true) {
     PlannedCellDrainage planned = plan_cell_drainage({surface, outward.winding()}, cells, limits, request,
                                                      can_open, can_open_wall, monitor);
