@@ -167,16 +167,6 @@ class CellChecker {
     return least;
   }
 
-  static bool are_within(const Box3d& a, const Box3d& b, double distance) {
-    const auto apart = [](double a_low, double a_high, double b_low, double b_high) {
-      return std::max({0.0, b_low - a_high, a_low - b_high});
-    };
-    const double x = apart(a.lower.x, a.upper.x, b.lower.x, b.upper.x);
-    const double y = apart(a.lower.y, a.upper.y, b.lower.y, b.upper.y);
-    const double z = apart(a.lower.z, a.upper.z, b.lower.z, b.upper.z);
-    return x * x + y * y + z * z < distance * distance;
-  }
-
   // How far apart two voids are along the way between their spheres; negative if that way does not tell.
   double apart_along(std::size_t i, std::size_t j) const {
     const Vec3d from = expected_.packing.spheres[cells_.voids[i].cell].centre;
@@ -215,7 +205,7 @@ class CellChecker {
     for (std::size_t a = 0; a < order.size(); ++a) {
       for (std::size_t b = a + 1; b < order.size(); ++b) {
         if (measured_[order[b]].box.lower.x > measured_[order[a]].box.upper.x + looked_for) break;
-        if (are_within(measured_[order[a]].box, measured_[order[b]].box, looked_for))
+        if (distance_squared(measured_[order[a]].box, measured_[order[b]].box) < looked_for * looked_for)
           near.emplace_back(std::minmax(order[a], order[b]));
       }
     }

@@ -77,14 +77,6 @@ double gap_along(double a_lower, double a_upper, double b_lower, double b_upper)
   return std::max({0.0, b_lower - a_upper, a_lower - b_upper});
 }
 
-double distance_squared(const Box3d& a, const Box3f& other) {
-  const Box3d b{to_double(other.lower), to_double(other.upper)};
-  const double x = gap_along(a.lower.x, a.upper.x, b.lower.x, b.upper.x);
-  const double y = gap_along(a.lower.y, a.upper.y, b.lower.y, b.upper.y);
-  const double z = gap_along(a.lower.z, a.upper.z, b.lower.z, b.upper.z);
-  return x * x + y * y + z * z;
-}
-
 // Lies `b` on one side of the plane of `a`, farther from it than the root of `limit_squared`? What cannot be told
 // for rounding is not.
 bool is_beyond_plane(const kernels::Facet& a, const kernels::Facet& b, double limit_squared) {
@@ -106,7 +98,9 @@ struct TriangleMetric {
   const kernels::TriangleBvhView& surface;
   double best_squared;
 
-  double bound(const Box3f& other) const { return distance_squared(box, other); }
+  double bound(const Box3f& other) const {
+    return distance_squared(box, {to_double(other.lower), to_double(other.upper)});
+  }
   double limit() const { return best_squared; }
   void visit(std::uint32_t i) {
     const kernels::Facet& other = surface.facets[i];
@@ -119,6 +113,13 @@ struct TriangleMetric {
 };
 
 }  // namespace
+
+double distance_squared(const Box3d& a, const Box3d& b) {
+  const double x = gap_along(a.lower.x, a.upper.x, b.lower.x, b.upper.x);
+  const double y = gap_along(a.lower.y, a.upper.y, b.lower.y, b.upper.y);
+  const double z = gap_along(a.lower.z, a.upper.z, b.lower.z, b.upper.z);
+  return x * x + y * y + z * z;
+}
 
 double distance_between(const kernels::Facet& a, const kernels::Facet& b) {
   return std::sqrt(distance_squared_between(Corners(a), Corners(b)));

@@ -5,6 +5,9 @@
 
 namespace aerate {
 
+// Squared distance of two boxes; 0 where they meet.
+double distance_squared(const Box3d& a, const Box3d& b);
+
 // Distance of two triangles, mm; 0 where they meet. fp64.
 double distance_between(const kernels::Facet& a, const kernels::Facet& b);
 

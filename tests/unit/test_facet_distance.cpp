@@ -150,5 +150,14 @@ TEST(DistanceToSurface, OfNothingIsTheLimit) {
   EXPECT_DOUBLE_EQ(distance_to_surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, nothing.view(), 7), 7);
 }
 
+TEST(BoxDistance, IsThatOfTheNearestCorners) {
+  const Box3d box{{0, 0, 0}, {1, 2, 3}};
+  EXPECT_EQ(distance_squared(box, {{4, 6, 3}, {5, 7, 8}}), 9 + 16);
+  EXPECT_EQ(distance_squared(box, {{-5, -7, -8}, {-4, -6, -2}}), 16 + 36 + 4);
+  EXPECT_EQ(distance_squared(box, {{0.5, 0.5, 3.5}, {9, 9, 9}}), 0.25);  // above
+  EXPECT_EQ(distance_squared(box, {{1, 2, 3}, {9, 9, 9}}), 0);           // in one corner
+  EXPECT_EQ(distance_squared(box, {{-1, 1, 1}, {9, 1.5, 2}}), 0);        // across
+}
+
 }  // namespace
 }  // namespace aerate
