@@ -127,7 +127,7 @@ std::string measure_processes(const std::filesystem::path& model, const std::fil
     if (process.limits.contains(Limit::bridge)) continue;  // cells have no roofs
     options.packing.process = sized_for_cells(std::move(options.packing.process), std::nullopt);
     options.cells = {.fillet = drainage_of(options.packing.process)->channel_radius};
-    options.tolerance = 0.1;
+    options.tolerance = kCellTolerance;
     add_row(process.name + " cells", options);
   }
   fmt::print("\n");

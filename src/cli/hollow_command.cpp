@@ -36,9 +36,6 @@ std::vector<std::string> described_flavor(const SlicerProfile& slicer) {
                       slicer.untested ? "; untested" : "")};
 }
 
-// Inner walls need less than the outer surface of spheres, and cells have more of them.
-constexpr double kCellTolerance = 0.1;  // mm
-
 struct HollowCommand {
   HollowCommand(CLI::App& command, const ConfigFile& config)
       : model(command),

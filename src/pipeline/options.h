@@ -68,6 +68,10 @@ struct CellOptions {
   double fillet = 1;  // mm: radius of their inner edges, and of the ball that has to fit everywhere in them
 };
 
+// The tolerance of cells unless it is given, mm: inner walls need less than the surface of spheres, and cells have
+// more of them.
+inline constexpr double kCellTolerance = 0.1;
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
