@@ -130,7 +130,10 @@ SurfaceTopology topology_of(std::span<const Triangle> triangles) {
   topology.shell_count = count_shells(twins);
   topology.euler = static_cast<std::int64_t>(edges.vertex_count() + triangles.size()) -
                    static_cast<std::int64_t>(twins.size() / 2);
-  topology.pinch_count = count_fans(twins) - edges.vertex_count();
+  // With a vertex for each fan, shells are closed oriented 2-manifolds, of an Euler characteristic of 2 at most each. A
+  // pinch is one vertex less than that, so where the sum is the most there is none, and none is looked for.
+  if (topology.euler < 2 * static_cast<std::int64_t>(topology.shell_count))
+    topology.pinch_count = count_fans(twins) - edges.vertex_count();
   return topology;
 }
 
