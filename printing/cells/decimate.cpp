@@ -167,7 +167,7 @@ class Decimation {
         fits = false;
       }
     });
-    if (!fits || size < 4) return size == 3 && false;
+    if (!fits || size < 4) return false;
     std::size_t common = 0;
     for_each_neighbour(c.kept, [&](std::uint32_t v) {
       common += std::find(ring.begin(), ring.begin() + size, v) != ring.begin() + size;
