@@ -16,7 +16,9 @@ namespace aerate {
 std::string read_text(const std::filesystem::path& path);
 
 // Text from outside as it may stand in a comment of G-code or in a message: nothing in it ends a line or
-// commands a terminal. Control characters become "\\x0A" and the like; what is too long is cut off.
+// commands a terminal. Control characters become "\\x0A" and the like; what is too long is cut off. All other bytes stay
+// as they are, whatever their encoding: slicers name objects in it by these bytes. What is shown goes through
+// `printable` besides, which takes nothing that is no UTF-8.
 std::string on_one_line(std::string_view text);
 
 bool is_utf8(std::string_view text);
