@@ -78,5 +78,33 @@ TEST(ShellTopology, FindsASphereThatTouchesItself) {
   expect_flaw(sphere, "Euler characteristic is 1");
 }
 
+// One vertex in the place of two.
+Mesh with_joined(Mesh mesh, std::uint32_t kept, std::uint32_t gone) {
+  for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), gone, kept);
+  return mesh;
+}
+
+// Euler characteristics are those of what is not pinched less one for each pinch, also where they look sound.
+TEST(ShellTopology, CountsPinches) {
+  const auto expect = [](const Mesh& mesh, std::size_t shells, std::int64_t euler, std::size_t pinches) {
+    const SurfaceTopology topology = topology_of(mesh.triangles);
+    EXPECT_EQ(topology.flaw, std::nullopt);
+    EXPECT_EQ(topology.shell_count, shells);
+    EXPECT_EQ(topology.euler, euler);
+    EXPECT_EQ(topology.pinch_count, pinches);
+  };
+  const Mesh box = test::make_box({0, 0, 0}, {1, 1, 1});
+  const Mesh two = test::join(box, box), torus = test::make_torus(3, 1, 12, 8);
+  expect(box, 1, 2, 0);
+  expect(two, 2, 4, 0);
+  expect(torus, 1, 0, 0);
+  expect(with_joined(two, 7, 8), 2, 3, 1);
+  expect(with_joined(with_joined(two, 7, 8), 0, 15), 2, 2, 2);  // as a box
+  expect(with_joined(torus, 0, 50), 1, -1, 1);
+  const Mesh box_and_torus = test::join(box, torus);
+  expect(box_and_torus, 2, 2, 0);  // again
+  expect(with_joined(box_and_torus, 7, 8), 2, 1, 1);
+}
+
 }  // namespace
 }  // namespace aerate
