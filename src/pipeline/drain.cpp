@@ -15,7 +15,7 @@
 #include "check/crossings.h"
 #include "core/error.h"
 #include "mesh/outward_shells.h"
-#include "packing/cell_drainage.h"
+#include "packing/cells/cell_drainage.h"
 #include "printing/carve_drained.h"
 #include "printing/cells/carve_drained_cells.h"
 #include "printing/cut_holes.h"

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "packing/cell_drainage_ways_out.h"
+#include "packing/cells/cell_drainage_ways_out.h"
 
 namespace aerate {
 

@@ -6,7 +6,7 @@
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "kernels/constants.h"
-#include "packing/cell_drainage_stages.h"
+#include "packing/cells/cell_drainage_stages.h"
 
 namespace aerate {
 namespace {

@@ -1,4 +1,4 @@
-#include "packing/cell_drainage_draft.h"
+#include "packing/cells/cell_drainage_draft.h"
 
 #include <algorithm>
 #include <array>

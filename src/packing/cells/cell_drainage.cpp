@@ -1,9 +1,9 @@
-#include "packing/cell_drainage.h"
+#include "packing/cells/cell_drainage.h"
 
 #include <utility>
 
-#include "packing/cell_drainage_draft.h"
-#include "packing/cell_drainage_stages.h"
+#include "packing/cells/cell_drainage_draft.h"
+#include "packing/cells/cell_drainage_stages.h"
 #include "packing/drainage_refusals.h"
 
 namespace aerate {

@@ -1,4 +1,4 @@
-#include "packing/cell_drainage_faces.h"
+#include "packing/cells/cell_drainage_faces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "packing/cell_drainage_hollows.h"
+#include "packing/cells/cell_drainage_hollows.h"
 
 #include <algorithm>
 #include <array>

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "packing/cell_drainage.h"
-#include "packing/cell_drainage_holes.h"
-#include "packing/cell_drainage_pools.h"
-#include "packing/cell_drainage_surfaces.h"
-#include "packing/cell_windows.h"
+#include "packing/cells/cell_drainage.h"
+#include "packing/cells/cell_drainage_holes.h"
+#include "packing/cells/cell_drainage_pools.h"
+#include "packing/cells/cell_drainage_surfaces.h"
+#include "packing/cells/cell_windows.h"
 
 // What the stages of planning the drainage of cells hand on to each other.
 

@@ -1,4 +1,4 @@
-#include "packing/node_pools.h"
+#include "packing/cells/node_pools.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "kernels/constants.h"
-#include "packing/cell_drainage_hollows.h"
+#include "packing/cells/cell_drainage_hollows.h"
 
 namespace aerate {
 namespace {

@@ -1,11 +1,11 @@
-#include "packing/cell_windows.h"
+#include "packing/cells/cell_windows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tbb/parallel_for.h>
 #include <utility>
 
-#include "packing/cell_drainage_faces.h"
+#include "packing/cells/cell_drainage_faces.h"
 #include "packing/placed_tubes.h"
 
 namespace aerate {

@@ -1,4 +1,4 @@
-#include "packing/cell_drainage_ways_out.h"
+#include "packing/cells/cell_drainage_ways_out.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include "core/drainage.h"
 #include "core/monitor.h"
 #include "core/packing.h"
-#include "packing/cell_drainage_pools.h"
-#include "packing/cell_drainage_surfaces.h"
+#include "packing/cells/cell_drainage_pools.h"
+#include "packing/cells/cell_drainage_surfaces.h"
 
 namespace aerate {
 

@@ -1,4 +1,4 @@
-#include "packing/cell_drainage_flow.h"
+#include "packing/cells/cell_drainage_flow.h"
 
 #include <algorithm>
 #include <limits>

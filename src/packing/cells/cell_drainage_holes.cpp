@@ -1,4 +1,4 @@
-#include "packing/cell_drainage_holes.h"
+#include "packing/cells/cell_drainage_holes.h"
 
 #include <algorithm>
 #include <cmath>

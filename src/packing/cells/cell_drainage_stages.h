@@ -1,6 +1,6 @@
 #pragma once
 
-#include "packing/cell_drainage_draft.h"
+#include "packing/cells/cell_drainage_draft.h"
 
 // Each takes a draft and gives the next.
 

@@ -15,7 +15,7 @@ namespace aerate {
 struct PlannedCellDrainage {
   std::vector<std::uint32_t> kept;  // indices into cells.voids, ascending; the plan counts these
   // Channels are windows: round tubes across the wall between two cells, parallel to its normal, that end in
-  // both voids just beyond its faces (packing/cell_windows.h).
+  // both voids just beyond its faces (packing/cells/cell_windows.h).
   DrainagePlan plan;
   UndrainedVoids dropped;
 };
@@ -29,10 +29,10 @@ using CanOpenWall = std::function<bool(const Tube& window)>;
 // Joins voids that are cells by windows in their walls, and opens them to the outside.
 //
 // Voids are the nodes of a graph, its edges round places in the flat parts of both faces of a wall
-// (packing/cell_windows.h); a wall without such a place is no edge. Each connected set of voids that is
+// (packing/cells/cell_windows.h); a wall without such a place is no edge. Each connected set of voids that is
 // large enough gets an escape hole for print orientation and one for the model upside down
-// (packing/cell_drainage_holes.h). From the low hole a flood in order of height, through the hollows of all
-// voids (packing/cell_drainage_pools.h; Barnes, Lehman and Mulla 2014), makes the spanning tree: each void
+// (packing/cells/cell_drainage_holes.h). From the low hole a flood in order of height, through the hollows of all
+// voids (packing/cells/cell_drainage_pools.h; Barnes, Lehman and Mulla 2014), makes the spanning tree: each void
 // is joined so that its liquid has to rise least. While more than a hundredth of the volume stays after both
 // orientations: windows beside the tree, which nobody sees; then holes for the largest pools (unless both
 // were asked for), and windows again; at last voids of which too much would stay full are left out.

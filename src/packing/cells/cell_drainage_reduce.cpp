@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "kernels/constants.h"
-#include "packing/cell_drainage_stages.h"
+#include "packing/cells/cell_drainage_stages.h"
 
 namespace aerate {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/drainage.h"
-#include "packing/node_pools.h"
+#include "packing/cells/node_pools.h"
 
 // How liquid runs through the hollows of voids that windows and holes open, and what stays. A flood in order
 // of height from the holes gives each hollow its spill height: the least height, over all ways out, of the

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "packing/node_pools.h"
+#include "packing/cells/node_pools.h"
 
 // How the hollows of a void grow out of its nodes.
 

@@ -1,4 +1,4 @@
-#include "packing/cell_drainage_pools.h"
+#include "packing/cells/cell_drainage_pools.h"
 
 #include <algorithm>
 #include <map>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "kernels/constants.h"
-#include "packing/cell_drainage_flow.h"
+#include "packing/cells/cell_drainage_flow.h"
 
 namespace aerate {
 namespace {
