@@ -4,10 +4,14 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "kernels/cuda_device.h"
+#include "kernels/power_cells.h"
 #include "tests/cuda/cuda_test.h"
 #include "tests/support/adaptive_input.h"
+#include "tests/support/balls.h"
 #include "tests/support/hexagonal_input.h"
 #include "tests/support/shapes.h"
 
@@ -202,6 +206,15 @@ TEST_F(FailingCalls, OfAdaptivePacking) {
   AdaptiveInput input = test::adaptive_input(box);
   input.parameters.min_radius = 0.4;
   expect_no_call_is_missed([&] { ASSERT_GT(pack_on_cuda<AdaptivePacking<>>(0, input).balls.size(), 5U); });
+}
+
+TEST_F(FailingCalls, OfCells) {
+  constexpr Box3d kBox{{0, 0, 0}, {4, 4, 4}};
+  std::vector<Ball> balls;
+  test::add_random_balls(balls, 12, kBox, 0.2, 0.8, 0.1, 1);
+  expect_no_call_is_missed([&] {
+    ASSERT_GT(pack_on_cuda<PowerCells>(0, {balls, 0.1, kBox}).planes.size(), balls.size());
+  });
 }
 
 }  // namespace
