@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/listed.h"
 #include "files/formats.h"
+#include "packing/methods.h"
 #include "pipeline/hollow.h"
 #include "printing/materials.h"
 #include "printing/slicers/slicers.h"
@@ -34,6 +35,13 @@ std::vector<std::string> described_flavor(const SlicerProfile& slicer) {
   if (!slicer.modifiers) return {};
   return {fmt::format("{} ({}{})", slicer.modifiers->flavor, fmt::join(slicer.family, ", "),
                       slicer.untested ? "; untested" : "")};
+}
+
+std::string packings_on_a_lattice() {
+  std::vector<std::string> names;
+  for (const PackingMethod& method : packing_methods())
+    if (method.on_lattice) names.emplace_back(method.name);
+  return listed(names, "or");
 }
 
 struct HollowCommand {
@@ -68,9 +76,9 @@ struct HollowCommand {
             "--shape", shape,
             "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
             "thick as --gap and take nearly all that is deeper than --wall (default cells where voids drain "
-            "and "
-            "ceilings are not limited, which is " +
-                processes_that(makes_cells) + "; else spheres)")
+            "and ceilings are not limited, which is " +
+                processes_that(makes_cells) + ", unless there is --packing " + packings_on_a_lattice() +
+                ", --spheres or --target-density; else spheres)")
         ->check(CLI::IsMember({"spheres", "cells"}))
         ->type_name("SHAPE");
     command

@@ -11,15 +11,16 @@ namespace aerate::cli {
 namespace {
 
 // What a limit is that is not given.
-std::string default_in_words(LimitGroup group) {
-  const auto limits_no_ceilings = [](const Process& process) {
-    return !process.limits.contains(Limit::overhang) || !process.limits.contains(Limit::bridge);
-  };
-  switch (group) {
+std::string default_in_words(const LimitRow& row) {
+  const auto has_none = [&](const Process& process) { return !process.limits.contains(row.limit); };
+  switch (row.group) {
     case LimitGroup::packing:
       return fmt::format("default of the process, here of {}", processes().front().name);
     case LimitGroup::ceilings:
-      return fmt::format("default of the process; none for {}", processes_that(limits_no_ceilings));
+      return fmt::format(
+          "default of the process; none for {}; ceilings are limited where there are both "
+          "--overhang and --bridge",
+          processes_that(has_none));
     default:
       return "default of the process";
   }
@@ -32,7 +33,7 @@ LimitOptions::LimitOptions(CLI::App& command, const ConfigFile& config,
     : config_(config) {
   for (const LimitRow& row : limit_rows()) {
     if (std::ranges::find(groups, row.group) == groups.end()) continue;
-    const std::string help = fmt::format("{} ({})", row.explanation, default_in_words(row.group));
+    const std::string help = fmt::format("{} ({})", row.explanation, default_in_words(row));
     CLI::Option* option = command.add_option(std::string(row.option), help)
                               ->check(number_between(row.least, row.most, std::string(row.unit.name)))
                               ->type_name(std::string(row.unit.placeholder));

@@ -53,6 +53,25 @@ TEST(ProcessOptions, ListNamesEveryFigureAndItsSource) {
   }
 }
 
+// Which processes have no such limit, in the help as in the list.
+TEST(ProcessOptions, HelpAndListAgreeOnCeilings) {
+  const std::string help = run({AERATE_EXECUTABLE, "hollow", "--help"}).out;
+  EXPECT_TRUE(contains(help, "none for sls; ceilings are limited where"));          // --overhang
+  EXPECT_TRUE(contains(help, "none for sla and sls; ceilings are limited where"));  // --bridge
+  const std::string list = run({AERATE_EXECUTABLE, "hollow", "--process", "list"}).out;
+  const auto has = [&](const std::string& process, const std::string& limit) {
+    const std::size_t begin = list.find(process + ": ");
+    const std::size_t next = list.find("\n", list.find("escape-hole", begin));
+    return list.substr(begin, next - begin).find("\n  " + limit + " ") != std::string::npos;
+  };
+  EXPECT_TRUE(has("sla", "overhang"));
+  EXPECT_FALSE(has("sla", "bridge"));
+  EXPECT_FALSE(has("sls", "overhang"));
+  EXPECT_FALSE(has("sls", "bridge"));
+  EXPECT_TRUE(has("metal", "overhang"));
+  EXPECT_TRUE(has("metal", "bridge"));
+}
+
 TEST(ProcessOptions, WithoutAnyItIsFdm) {
   const Job job;
   const Json report = report_of(job, {});
