@@ -1,7 +1,11 @@
 #include "pipeline/carve_as_cells.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <fmt/format.h>
+#include <limits>
+#include <optional>
+#include <string>
 #include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
@@ -10,6 +14,7 @@
 #include "mesh/inspect.h"
 #include "packing/packing_cells.h"
 #include "pipeline/budget.h"
+#include "pipeline/held_notices.h"
 #include "printing/cells/shape_cells.h"
 
 namespace aerate {
@@ -52,6 +57,41 @@ CellVoids shape_soundly(const SurfaceIndex& surface, const Packing& packing, con
   return cells;
 }
 
+CarvedCells carve_at(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                     const CellPlanes& planes, const ProcessChoice& process, const HollowOptions& options,
+                     double tolerance, Monitor& monitor) {
+  const CellShape shape{options.cells->fillet, tolerance};
+  require_memory_for_cells(model.mesh, packing, shape);
+  CellVoids cells = shape_soundly(surface, packing, planes, shape, monitor);
+  if (cells.voids.empty())
+    throw NothingToRemoveError(fmt::format("{}: nothing to remove: no cell takes a ball of --fillet {:g} mm",
+                                           model.input.path.filename().string(), options.cells->fillet),
+                               "give a smaller --fillet, or --shape spheres");
+  if (!options.drainage) {
+    Solid solid = carve_cells(model.mesh, cells);
+    return {std::move(cells), std::nullopt, {std::move(solid), tolerance}};
+  }
+  DrainedCells drained =
+      drain_cells(model, surface, std::move(cells), packing.limits, process, options, tolerance, monitor);
+  return {std::move(drained.cells), std::move(drained.voids), {std::move(drained.solid), tolerance}};
+}
+
+// `fewest`: of the results that there were, if any.
+UsageError takes_more_triangles(std::size_t most, std::size_t outer, std::optional<std::size_t> fewest) {
+  std::string what = fmt::format("--max-triangles {}: the model has {} triangles of its own", most, outer);
+  if (!fewest) return UsageError(what, "allow more triangles: these stay as they are");
+  what += fmt::format(", and with cells there were no fewer than {}, however coarse these were", *fewest);
+  return UsageError(
+      what, fmt::format("allow {} triangles or more, or give a larger --cell-size or --min-radius for "
+                        "fewer cells",
+                        *fewest));
+}
+
+// Whether that a coarser result failed only says that it was too coarse.
+bool may_be_too_coarse(const Error& error) {
+  return error.code() == ExitCode::nothing_to_remove || error.code() == ExitCode::failure;
+}
+
 }  // namespace
 
 CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
@@ -63,37 +103,31 @@ CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surfa
   const Box3f box = bounding_box(model.mesh);
   const CellPlanes planes =
       cells_of(packing, {to_double(box.lower), to_double(box.upper)}, options.packing.device, monitor);
+  const std::size_t outer = model.mesh.triangles.size();
+  const std::size_t most = options.max_triangles.value_or(std::numeric_limits<std::size_t>::max());
+  if (most <= outer) throw takes_more_triangles(most, outer, std::nullopt);
+  std::optional<std::size_t> fewest;
   double tolerance = options.tolerance;
   for (int tries = 0; tries < kMostTries; ++tries, tolerance *= kLooser) {
-    const CellShape shape{options.cells->fillet, tolerance};
-    require_memory_for_cells(model.mesh, packing, shape);
-    CellVoids cells = shape_soundly(surface, packing, planes, shape, monitor);
-    if (cells.voids.empty())
-      throw NothingToRemoveError(
-          fmt::format("{}: nothing to remove: no cell takes a ball of --fillet {:g} mm",
-                      model.input.path.filename().string(), options.cells->fillet),
-          "give a smaller --fillet, or --shape spheres");
-    std::optional<DrainedVoids> drainage;
-    Solid solid;
-    if (options.drainage) {
-      DrainedCells drained =
-          drain_cells(model, surface, std::move(cells), packing.limits, process, options, tolerance, monitor);
-      cells = std::move(drained.cells);
-      drainage = std::move(drained.voids);
-      solid = std::move(drained.solid);
-    } else {
-      solid = carve_cells(model.mesh, cells);
+    HeldNotices held(monitor);
+    try {
+      CarvedCells made = carve_at(model, surface, packing, planes, process, options, tolerance, held);
+      const std::size_t count = made.carved.solid.mesh.triangles.size();
+      fewest = std::min(count, fewest.value_or(count));
+      if (count > most) continue;
+      held.pass_on();
+      if (tolerance > options.tolerance)
+        monitor.notice(
+            fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
+                        tolerance, options.tolerance, most));
+      return made;
+    } catch (const Error& error) {
+      if (fewest && may_be_too_coarse(error)) break;
+      held.pass_on();
+      throw;
     }
-    if (options.max_triangles && solid.mesh.triangles.size() > *options.max_triangles) continue;
-    if (tolerance > options.tolerance)
-      monitor.notice(
-          fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
-                      tolerance, options.tolerance, *options.max_triangles));
-    return {std::move(cells), std::move(drainage), {std::move(solid), tolerance}};
   }
-  throw UsageError(
-      fmt::format("--max-triangles {}: cells take more, however coarse they are", *options.max_triangles),
-      "allow more triangles, or give a larger --min-radius for fewer voids");
+  throw takes_more_triangles(most, outer, fewest);
 }
 
 }  // namespace aerate

@@ -116,13 +116,27 @@ TEST(CellsCommand, MaxTrianglesLoosensTheTolerance) {
   EXPECT_LE(report["output"]["triangles"].get<std::size_t>(), most);
   EXPECT_GT(report["voids"]["tolerance_used_mm"].get<double>(), 0.05);
   EXPECT_TRUE(contains(report["notices"].dump(), "to stay within " + std::to_string(most) + " triangles"));
+}
 
-  const Job other;
-  limited.back() = "20";
-  const ProcessResult result = run(other.hollow(model, limited));
+// Coarser and coarser results are tried, some of which lose voids: nothing is said of them.
+TEST(CellsCommand, TooFewTrianglesAreRefusedWithHowManyItTakes) {
+  const Job job;
+  const auto model = job.input("bar.stl", make_box({0, 0, 0}, {60, 30, 30}));
+  const ProcessResult result =
+      run(job.hollow(model, {"--process", "sls", "--shape", "cells", "--max-triangles", "20"}));
   EXPECT_EQ(result.exit_code, kUsage);
-  EXPECT_TRUE(contains(result.err, "--max-triangles 20"));
-  EXPECT_EQ(entries_of(other.outputs()), std::vector<std::string>{});
+  EXPECT_TRUE(contains(result.err, "--max-triangles 20: the model has 12 triangles of its own"));
+  EXPECT_TRUE(contains(result.err, "triangles or more"));
+  EXPECT_FALSE(contains(result.err, "note:"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+}
+
+TEST(CellsCommand, TrianglesOfTheModelItselfAreTooMany) {
+  const Job job;
+  const ProcessResult result = run(
+      job.hollow(sample("bunny.stl"), {"--process", "sls", "--shape", "cells", "--max-triangles", "7000"}));
+  EXPECT_EQ(result.exit_code, kUsage);
+  EXPECT_TRUE(contains(result.err, "the model has 7202 triangles of its own"));
 }
 
 TEST(CellsCommand, SameBytesForAnyThreadCount) {
