@@ -4,21 +4,45 @@
 
 namespace aerate {
 
+std::string narrower_holes(const DrainageRequest& request) {
+  if (request.hole_radius > request.channel_radius)
+    return fmt::format("a smaller --hole-diameter ({:g} mm or more, as wide as channels)",
+                       2 * request.channel_radius);
+  return narrower_channels();
+}
+
+std::string narrower_channels() {
+  return "a smaller --channel-diameter and --hole-diameter (holes are no narrower than channels)";
+}
+
+UsageError no_hole_leads_from(Vec3d place, const std::optional<Vec3d>& usable,
+                              const DrainageRequest& request) {
+  const std::string what = fmt::format(
+      "no straight hole leads from ({:f}, {:f}, {:f}) mm to a void that drains", place.x, place.y, place.z);
+  if (usable)
+    return UsageError(what,
+                      fmt::format("the nearest place from which one does is ({:.2f}, {:.2f}, {:.2f}) mm; "
+                                  "or leave --escape-hole out",
+                                  usable->x, usable->y, usable->z));
+  return UsageError(what, "ask for a place nearer to a large void, give " + narrower_holes(request) +
+                              ", or leave --escape-hole out");
+}
+
 NothingToRemoveError nothing_is_opened(const DrainageRequest& request) {
   return NothingToRemoveError(
       fmt::format("no place was found for two escape holes of {:g} mm, so no void can drain",
                   2 * request.hole_radius),
       request.escape_holes.empty()
-          ? "give a smaller --hole-diameter, larger voids, or places with --escape-hole"
+          ? "give " + narrower_holes(request) + ", larger voids, or places with --escape-hole"
           : "ask for other places, or leave --escape-hole out");
 }
 
-NothingToRemoveError all_stays_full() {
+NothingToRemoveError all_stays_full(const DrainageRequest& request) {
   return NothingToRemoveError(
       fmt::format("more than {:g} % of every group of voids would stay full, in print orientation and upside "
                   "down",
                   100 * kPoolsAimedAt),
-      "give other places with --escape-hole, a smaller --hole-diameter, or larger voids");
+      "give other places with --escape-hole, " + narrower_holes(request) + ", or larger voids");
 }
 
 }  // namespace aerate

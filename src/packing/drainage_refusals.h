@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/drainage.h"
@@ -9,10 +10,18 @@
 
 namespace aerate {
 
+// What to try where holes are too wide, and where channels are: with them what has to become narrower too.
+std::string narrower_holes(const DrainageRequest& request);
+std::string narrower_channels();
+
 // No network has two holes.
 NothingToRemoveError nothing_is_opened(const DrainageRequest& request);
 
+// A hole that is asked for at a place cannot be made there. `usable`: the nearest place at which one can.
+UsageError no_hole_leads_from(Vec3d place, const std::optional<Vec3d>& usable,
+                              const DrainageRequest& request);
+
 // All that was opened was left out again.
-NothingToRemoveError all_stays_full();
+NothingToRemoveError all_stays_full(const DrainageRequest& request);
 
 }  // namespace aerate

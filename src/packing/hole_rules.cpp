@@ -1,8 +1,10 @@
 #include "packing/hole_rules.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <utility>
 
 #include "core/error.h"
 
@@ -63,6 +65,29 @@ Vec3d on_surface_near(Vec3d place, double within, const TubeClearance& clearance
                                fmt::format("{:f}", off).substr(0, 5),
                                outside ? "outside the model" : "inside the model, away from its surface"),
                    "the surface is nearest at " + to_text(on_surface));
+}
+
+std::optional<Vec3d> nearest_place(Vec3d place, double longest, const TubeClearance& clearance,
+                                   const std::function<bool(Vec3d place)>& opens) {
+  constexpr int kRounds = 12;
+  const auto in_hundredths = [](double x) { return std::round(100 * x) / 100; };
+  std::vector<std::pair<double, Vec3d>> places;
+  for (const Vec3d axis : {Vec3d{0, 0, 1}, Vec3d{0, 0, -1}}) {
+    for (const Vec3d direction : directions_about(axis)) {
+      for (int round = 1; round <= kRounds; ++round) {
+        const Vec3d at = clearance.nearest_on_surface(place + direction * (2 * longest * round / kRounds));
+        const Vec3d told{in_hundredths(at.x), in_hundredths(at.y), in_hundredths(at.z)};
+        places.emplace_back(length(told - place), told);
+      }
+    }
+  }
+  std::ranges::stable_sort(places, {}, &std::pair<double, Vec3d>::first);
+  const auto repeated = std::ranges::unique(places, {}, &std::pair<double, Vec3d>::second);
+  places.erase(repeated.begin(), repeated.end());
+  for (const auto& [distance, at] : places) {
+    if (distance <= 2 * longest && opens(at)) return at;
+  }
+  return std::nullopt;
 }
 
 }  // namespace aerate

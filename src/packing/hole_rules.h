@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/drainage.h"
@@ -40,5 +42,11 @@ std::vector<Vec3d> directions_about(Vec3d axis);
 // than `within` mm.
 Vec3d on_surface_near(Vec3d place, double within, const TubeClearance& clearance,
                       const kernels::WindingView& outward);
+
+// The nearest point of the surface round a place, no farther than two holes are long, at which a hole `opens`; of
+// points that are looked at all round, so there may be one a little nearer. In whole hundredths of a millimetre, as
+// it is told.
+std::optional<Vec3d> nearest_place(Vec3d place, double longest, const TubeClearance& clearance,
+                                   const std::function<bool(Vec3d place)>& opens);
 
 }  // namespace aerate

@@ -1,12 +1,11 @@
 #include "packing/open_networks.h"
 
 #include <algorithm>
-#include <fmt/format.h>
 #include <utility>
 
 #include "core/disjoint_sets.h"
-#include "core/error.h"
 #include "kernels/constants.h"
+#include "packing/drainage_refusals.h"
 #include "packing/flood.h"
 
 namespace aerate {
@@ -118,22 +117,23 @@ Draft open_where_asked(DrainageTask& task, Draft draft) {
   for (std::uint32_t i = 0; i < draft.network_of.size(); ++i) {
     if (draft.network_of[i] != kNone) all.push_back(i);
   }
-  for (const Vec3d place : task.request.escape_holes) {
-    // Rather into a void beside which the hole leaves room for a channel.
+  // Rather into a void beside which the hole leaves room for a channel.
+  const auto hole_at = [&](Vec3d place) {
+    task.monitor.check_interrupted();
     const std::vector<EscapeHole> found = task.places.leading_to(place, all);
     std::vector<EscapeHole> roomy = found;
     std::erase_if(roomy,
                   [&](const EscapeHole& hole) { return !leaves_room_for_channel(task, draft.tubes, hole); });
-    auto hole = first_that_opens(task, draft.tubes, roomy);
-    if (!hole) hole = first_that_opens(task, draft.tubes, found);
-    if (!hole) {
-      throw UsageError(
-          fmt::format("no straight hole leads from ({:f}, {:f}, {:f}) mm to a void that channels "
-                      "join to others",
-                      place.x, place.y, place.z),
-          "ask for a place nearer to a large void, give a smaller --hole-diameter, or leave "
-          "--escape-hole out");
-    }
+    const auto hole = first_that_opens(task, draft.tubes, roomy);
+    return hole ? hole : first_that_opens(task, draft.tubes, found);
+  };
+  for (const Vec3d place : task.request.escape_holes) {
+    const auto hole = hole_at(place);
+    if (!hole)
+      throw no_hole_leads_from(place,
+                               nearest_place(place, longest_hole(task.request, task.limits), task.clearance,
+                                             [&](Vec3d at) { return hole_at(at).has_value(); }),
+                               task.request);
     draft.tubes.place(*hole);
     draft.asked_for.push_back(hole->from);
   }

@@ -20,7 +20,7 @@ void require_room_for_channels(const DrainageTask& task) {
   throw UsageError(
       fmt::format("a channel of {:g} mm is too wide for every void: the largest has a diameter of {:g} mm",
                   2 * task.request.channel_radius, 2 * largest),
-      "give a smaller --channel-diameter, or larger voids with --max-radius");
+      "give " + narrower_channels() + ", or larger voids with --max-radius");
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ PlannedDrainage plan_drainage(const DrainableModel& model, const Packing& packin
   if (request.escape_holes.size() < 2) draft = open_pools(task, std::move(draft));
   draft = add_channels_for_pools(task, std::move(draft));
   draft = leave_out_pools(task, std::move(draft));
-  if (draft.tubes.plan().holes.empty()) throw all_stays_full();
+  if (draft.tubes.plan().holes.empty()) throw all_stays_full(request);
   return planned(task, draft);
 }
 

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "mesh/outward_shells.h"
 #include "packing/cells/cell_drainage.h"
+#include "packing/drainage_refusals.h"
 #include "printing/carve_drained.h"
 #include "printing/cells/carve_drained_cells.h"
 #include "printing/cut_holes.h"
@@ -210,15 +211,15 @@ void require_resolvable_tubes(const Mesh& model, const DrainageRequest& request,
 }
 
 void require_room_for_tubes(const DrainageRequest& request, const PackingLimits& limits) {
-  const auto require = [&](double radius, const char* what, const char* option) {
+  const auto require = [&](double radius, const char* what, const std::string& smaller) {
     if (radius <= kWidestTubeShare * limits.max_radius) return;
     throw UsageError(fmt::format("{} of {:g} mm is too wide for every void: none is wider than {:g} mm "
                                  "(--max-radius {:g})",
                                  what, 2 * radius, 2 * limits.max_radius, limits.max_radius),
-                     fmt::format("give a smaller {}, or a larger --max-radius", option));
+                     fmt::format("give {}, or a larger --max-radius", smaller));
   };
-  require(request.channel_radius, "a channel", "--channel-diameter");
-  require(request.hole_radius, "an escape hole", "--hole-diameter");
+  require(request.channel_radius, "a channel", narrower_channels());
+  require(request.hole_radius, "an escape hole", narrower_holes(request));
 }
 
 CarvedModel carve_within(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,

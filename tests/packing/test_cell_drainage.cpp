@@ -11,6 +11,8 @@
 #include "packing/cells/cell_drainage.h"
 #include "packing/cells/cell_windows.h"
 #include "tests/packing/cell_boxes.h"
+#include "tests/support/caught.h"
+#include "tests/support/place_said.h"
 
 namespace aerate::test {
 namespace {
@@ -124,6 +126,25 @@ TEST(CellDrainage, HolesThatAreAskedForAreWhereTheyAreAskedFor) {
   EXPECT_LT(length(planned.plan.holes[1].tube.end - Vec3d{30, 12, 24}), 1.5);
   expect_sound(model, cells, planned, boxes);
   EXPECT_THROW(plan(model, cells, request_of({{10, -9, 8}})), UsageError);
+}
+
+// The end of a bar is too far from any void for a hole. The place that the refusal names is one that is taken.
+TEST(CellDrainage, WhereNoHoleOpensTheNearestPlaceIsSaid) {
+  const std::vector<Box> boxes = equal_boxes(2, 19.5);
+  const Mesh bar = make_box({0, 0, 0}, {200, 24, 24});
+  const CellVoids cells = row_of(boxes);
+  const auto refused = [&](Vec3d place) {
+    return message_of<UsageError>([&] { plan(bar, cells, request_of({place})); });
+  };
+  const Vec3d asked{60, 12, 24};
+  const auto place = place_said_in(refused(asked));
+  ASSERT_TRUE(place.has_value());
+  EXPECT_LT(length(*place - asked), 18);
+  const PlannedCellDrainage planned = plan(bar, cells, request_of({*place}));
+  EXPECT_LT(length(planned.plan.holes[0].tube.end - *place), 1.5);
+  const std::string far_away = refused({180, 12, 24});
+  EXPECT_FALSE(place_said_in(far_away).has_value());
+  EXPECT_TRUE(contains(far_away, "--hole-diameter"));
 }
 
 TEST(CellDrainage, HolesThatCannotBeCutAreNotMade) {

@@ -21,6 +21,7 @@
 #include "packing/tube_through.h"
 #include "tests/support/caught.h"
 #include "tests/support/clearance.h"
+#include "tests/support/place_said.h"
 #include "tests/support/shapes.h"
 
 namespace aerate {
@@ -454,6 +455,21 @@ TEST_F(PlanDrainage, WhatCannotBeIsRefusedWithWhatToDo) {
   request_.channel_radius = 9;
   request_.hole_radius = 9;
   EXPECT_TRUE(contains(refused(), "too wide for every void"));
+}
+
+// The end of a bar is too far from any void for a hole. The place that the refusal names is one that is taken.
+TEST_F(PlanDrainage, WhereNoHoleOpensTheNearestPlaceIsSaid) {
+  mesh_ = test::make_box({0, 0, 0}, {120, 30, 30});
+  packing_ = packing_of({ball({15, 15, 15}, 8), ball({36, 15, 15}, 9)});
+  const Vec3d asked{60, 15, 30};
+  request_.escape_holes = {asked};
+  const auto place = test::place_said_in(message_of<UsageError>([&] { plan(); }));
+  ASSERT_TRUE(place.has_value());
+  EXPECT_LT(length(*place - asked), 20);
+  request_.escape_holes = {*place};
+  EXPECT_LT(length(plan().plan.holes.at(0).tube.end - *place), request_.hole_radius);
+  request_.escape_holes = {{110, 15, 30}};
+  EXPECT_FALSE(test::place_said_in(message_of<UsageError>([&] { plan(); })).has_value());
 }
 
 TEST_F(PlanDrainage, WhereNoHoleCanBeCutNothingIsMade) {

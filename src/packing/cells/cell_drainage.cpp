@@ -23,7 +23,7 @@ PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVo
     draft = add_windows_for_pools(task, std::move(draft));
   }
   draft = leave_out_pools(task, std::move(draft));
-  if (draft.holes.empty()) throw all_stays_full();
+  if (draft.holes.empty()) throw all_stays_full(request);
   return planned(task, draft);
 }
 

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <utility>
 
+#include "core/facet_distance.h"
 #include "kernels/constants.h"
 #include "packing/hole_rules.h"
 
@@ -176,6 +177,10 @@ std::optional<CellHole> CellHolePlaces::leading_to(Vec3d place, std::span<const 
   Ways ways;
   for (const std::uint32_t from : voids) {
     const VoidNodes& nodes = hollows_[from].nodes();
+    // Nodes that were put together may lie just outside of the cell.
+    const double reach = ways_out_.longest() + 2 * nodes.lattice.spacing;
+    const Box3d& box = cells_.planes.boxes[cells_.voids[from].cell];
+    if (distance_squared(box, {on_surface, on_surface}) > reach * reach) continue;
     std::vector<std::pair<double, std::uint32_t>> near;
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       const double distance = length(nodes.at(i) - on_surface);

@@ -1,12 +1,12 @@
 #include <algorithm>
-#include <fmt/format.h>
 #include <functional>
 #include <utility>
 
 #include "core/disjoint_sets.h"
-#include "core/error.h"
 #include "kernels/constants.h"
 #include "packing/cells/cell_drainage_stages.h"
+#include "packing/drainage_refusals.h"
+#include "packing/hole_rules.h"
 
 namespace aerate {
 namespace {
@@ -171,15 +171,19 @@ CellDraft open_where_asked(CellDrainageTask& task, CellDraft draft) {
   for (std::uint32_t i = 0; i < task.void_count(); ++i) {
     if (draft.is_kept[i] != 0) all.push_back(i);
   }
-  for (const Vec3d place : task.request.escape_holes) {
-    auto hole = task.places.leading_to(
+  const auto hole_at = [&](Vec3d place) {
+    task.monitor.check_interrupted();
+    return task.places.leading_to(
         place, all, [&](const CellHole& candidate) { return can_place(task, draft, candidate); });
-    if (!hole) {
-      throw UsageError(fmt::format("no straight hole leads from ({:f}, {:f}, {:f}) mm to a void", place.x,
-                                   place.y, place.z),
-                       "ask for a place nearer to a large void, give a smaller --hole-diameter, or leave "
-                       "--escape-hole out");
-    }
+  };
+  for (const Vec3d place : task.request.escape_holes) {
+    auto hole = hole_at(place);
+    if (!hole)
+      throw no_hole_leads_from(
+          place,
+          nearest_place(place, longest_hole(task.request, task.limits), task.surfaces.model(),
+                        [&](Vec3d at) { return hole_at(at).has_value(); }),
+          task.request);
     draft.asked_for.push_back(hole->hole.from);
     draft.holes.push_back(std::make_shared<const CellHole>(std::move(*hole)));
   }
