@@ -82,8 +82,9 @@ std::optional<Vec3d> nearest_place(Vec3d place, double longest, const TubeCleara
     }
   }
   std::ranges::stable_sort(places, {}, &std::pair<double, Vec3d>::first);
-  const auto repeated = std::ranges::unique(places, {}, &std::pair<double, Vec3d>::second);
-  places.erase(repeated.begin(), repeated.end());
+  places.erase(std::unique(places.begin(), places.end(),
+                           [](const auto& a, const auto& b) { return a.second == b.second; }),
+               places.end());
   for (const auto& [distance, at] : places) {
     if (distance <= 2 * longest && opens(at)) return at;
   }

@@ -50,6 +50,7 @@ TEST(NodePools, AreThoseOfBruteForceInAnyShape) {
   std::uniform_real_distribution<double> share(0, 1);
   for (int shape = 0; shape < 12; ++shape) {
     std::vector<std::pair<Vec3d, double>> balls;
+    balls.reserve(12);
     for (int i = 0; i < 12; ++i)
       balls.push_back(
           {{15 * share(random), 15 * share(random), 15 * share(random)}, 1.5 + 2 * share(random)});
