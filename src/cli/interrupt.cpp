@@ -39,11 +39,13 @@ void remove_abruptly(const char* path) {
 }
 
 extern "C" void on_interrupt(int /*signal*/) {
+  const int error = errno;  // of what was interrupted, which may look at it
   if (g_signals.fetch_add(1) == 0) {
     if (isatty(STDERR_FILENO) != 0) {
       constexpr std::string_view kText = "\naerate: stopping; once more to stop at once\n";
       [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kText.data(), kText.size());
     }
+    errno = error;
     return;
   }
   for (GuardedFile& file : g_files) {
