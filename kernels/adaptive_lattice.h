@@ -64,19 +64,18 @@ struct Lattice {
   }
 };
 
-// One of an endless number of trials: all nine combinations of stacking and axis with the first layer, row
-// and ball as near as they may be to the sides of the box, then again with offsets from a sequence of low
-// discrepancy.
-inline Lattice make_lattice(const Box3d& box, double radius, double inset, std::uint32_t trial) {
+// One of an endless number for each stacking and axis: the first layer, row and ball as near as they may be to the
+// sides of the box, then with offsets from a sequence of low discrepancy.
+inline Lattice make_lattice(const Box3d& box, double radius, double inset, Stacking stacking,
+                            std::uint32_t axis, std::uint32_t round) {
   constexpr double kOffset[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   Lattice lattice;
   lattice.radius = radius;
-  lattice.stacking = static_cast<Stacking>(trial % 3);
-  lattice.axis = trial / 3 % 3;
+  lattice.stacking = stacking;
+  lattice.axis = axis;
   const Vec3d lower = Lattice::turned(box.lower, lattice.axis);
   const Vec3d upper = Lattice::turned(box.upper, lattice.axis);
   const Vec3d step = lattice.pitch();
-  const std::uint32_t round = trial / 9;
   const auto start = [&](double low, double pitch, int k) {
     const double offset = round * kOffset[k];
     return low + inset - pitch * (offset - std::floor(offset));
@@ -89,6 +88,11 @@ inline Lattice make_lattice(const Box3d& box, double radius, double inset, std::
   lattice.count_y = count(upper.y - lattice.origin.y, step.y);
   lattice.count_z = count(upper.z - lattice.origin.z, step.z);
   return lattice;
+}
+
+// One of an endless number of trials: all nine combinations of stacking and axis, then again with other offsets.
+inline Lattice make_lattice(const Box3d& box, double radius, double inset, std::uint32_t trial) {
+  return make_lattice(box, radius, inset, static_cast<Stacking>(trial % 3), trial / 3 % 3, trial / 9);
 }
 
 struct LatticeFit {

@@ -41,6 +41,7 @@ struct AdaptiveParameters {
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
   double max_volume = kInfinity;  // mm3, of all voids
   Roof roof{};
+  bool in_level_squares = false;  // see PackingLimits
 };
 
 struct AdaptiveInput : PackerInput {
@@ -251,13 +252,14 @@ class AdaptivePacker {
   // directions at least, in the best of several orientations and offsets; `Lattice` says which there are. In
   // slender models a lattice fits badly whatever its offset, and balls that settle are denser. In a slab it
   // has to leave little room for what is between the radii, or they have to be alike. There is none for voids
-  // that are no balls.
+  // that are no balls. Level squares are asked for: they stand however few they are.
   void place_lattice(double half_thickness, double half_middle) {
     constexpr double kDiameters = 3, kAlike = 0.95;
     constexpr double kLeastShare = 0.25, kLeastShareOfSlab = 0.5;  // of the volume, half the gap included
     constexpr std::uint32_t kTrials = 16;
     const double least_half = parameters_.max_radius * kDiameters;
-    if (!Shape::kIsBall || !(least_half < half_middle)) return;
+    const bool is_asked_for = parameters_.in_level_squares && up_axis() != kNone;
+    if (!Shape::kIsBall || (!is_asked_for && !(least_half < half_middle))) return;
     const bool fills_by_itself =
         least_half < half_thickness || parameters_.min_radius >= kAlike * parameters_.max_radius;
     const double least_share = fills_by_itself ? kLeastShare : kLeastShareOfSlab;
@@ -267,14 +269,17 @@ class AdaptivePacker {
     Lattice best;
     std::size_t best_count = 0;
     for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
-      const Lattice lattice = make_lattice(box_, radius + 0.5 * parameters_.gap + shrink_,
-                                           radius + parameters_.wall + 2 * shrink_, trial);
+      const double apart = radius + 0.5 * parameters_.gap + shrink_;
+      const double inset = radius + parameters_.wall + 2 * shrink_;
+      const Lattice lattice = is_asked_for
+                                  ? make_lattice(box_, apart, inset, Stacking::square, up_axis(), trial)
+                                  : make_lattice(box_, apart, inset, trial);
       const std::size_t count = count_fitting(fit, lattice);
       if (count <= best_count) continue;
       best = lattice;
       best_count = count;
     }
-    if (best_count == 0 || lattice_share(best_count) < least_share) return;
+    if (best_count == 0 || (!is_asked_for && lattice_share(best_count) < least_share)) return;
     best_count = std::min(best_count, parameters_.max_count);
     lattice_count_ = best_count;
     balls_.resize(executor_, best_count);
@@ -285,6 +290,14 @@ class AdaptivePacker {
       placed = std::min(placed + total.first, best_count);
     });
     stop_at_limits(0);
+  }
+
+  // Of the model's axes the one that `roof.up` lies along, or kNone.
+  std::uint32_t up_axis() const {
+    const Vec3d up = parameters_.roof.up;
+    if (std::abs(up.x) == 1) return 0;
+    if (std::abs(up.y) == 1) return 1;
+    return std::abs(up.z) == 1 ? 2 : kNone;
   }
 
   double lattice_share(std::size_t count) const {

@@ -65,7 +65,8 @@ class Roller {
     const std::int32_t i = nearest(place.x), j = nearest(place.y), k = nearest(place.z);
     if (i < 0 || j < 0 || k < 0 || i >= box.count_x || j >= box.count_y || k >= box.count_z) return false;
     const double expected = std::min(own.radius - box.lattice.spacing, nodes_.deepest);
-    return own.radius >= nodes_.ball_radius &&
+    constexpr double kRounding = 1e-8;
+    return own.radius >= nodes_.ball_radius && region_.behind_planes(own.centre) >= own.radius - kRounding &&
            nodes_.depth[box.index(i, j, k)] >= static_cast<float>(expected);
   }
 

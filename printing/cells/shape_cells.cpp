@@ -13,11 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/ceiling.h"
 #include "core/disjoint_sets.h"
 #include "core/error.h"
 #include "printing/cells/cell_nodes.h"
 #include "printing/cells/decimate.h"
 #include "printing/cells/keep_wall.h"
+#include "printing/cells/piece_roof.h"
 #include "printing/cells/piece_surface.h"
 #include "printing/cells/rolled_balls.h"
 
@@ -56,32 +58,141 @@ class CellShaper {
     CellNodes nodes = look_at_nodes(region, box, shape_.fillet, lattice_);
     for (const Vec3d place : solid) keep_solid_about(nodes, place);
     std::vector<CellVoid> voids;
-    std::vector<std::int32_t> labels;
     constexpr int kMostPieces = 64;
     for (int rounds = 0; nodes.box.size() > 0 && rounds < kMostPieces; ++rounds) {
-      const OpenedCell opened = open_cell(region, nodes, packing_.spheres[cell]);
-      const std::vector<NodePiece> pieces = find_pieces(nodes.box, opened.is_void, labels);
-      const auto is_worth_it = [&](const NodePiece& piece) {
-        return volume_of_nodes(piece.size) >= kLeastVolume &&
-               takes_least_ball(region, nodes, labels, piece.label, packing_.spheres[cell]);
-      };
-      const auto piece = std::ranges::find_if(pieces, is_worth_it);
-      if (piece == pieces.end()) break;
-      const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
-      const PieceSurface surface = surface_of_piece(nodes.box, opened, nodes, labels, piece->label, placer);
+      const Opened opened = open(region, nodes, cell);
+      if (!opened.piece) break;
+      if (packing_.limits.roof.limits_ceilings()) {
+        add_below_roof(cell, planes, nodes, opened, voids);
+        continue;
+      }
+      const PieceSurface surface = surface_of(region, nodes, opened);
       if (const auto loose = middle_of_loose_solid(surface)) {
         keep_attached(nodes, *loose);
         continue;
       }
-      voids.push_back(make(cell, region, surface, runs_of_piece(nodes.box, labels, piece->label)));
-      if (std::none_of(std::next(piece), pieces.end(), [](const NodePiece& other) { return other.size > 8; }))
-        break;
-      keep_away_from(nodes, labels, piece->label);
+      voids.push_back(make(cell, region, surface, runs_of_piece(nodes.box, opened.labels, *opened.piece)));
+      if (!opened.has_others) break;
+      keep_away_from(nodes, opened.labels, *opened.piece);
     }
     return voids;
   }
 
  private:
+  // A region opened by the ball, and what is made of it next: the largest piece that is worth it, if any.
+  struct Opened {
+    OpenedCell cell;
+    std::vector<std::int32_t> labels;  // of nodes
+    std::optional<std::int32_t> piece;
+    bool has_others = false;  // that may be worth it
+  };
+
+  // A piece below its roof.
+  struct Roofed {
+    std::vector<CellPlane> planes;  // of the cell and of the roof
+    CellNodes nodes;
+    Opened opened;
+  };
+
+  Opened open(const CellRegion& region, const CellNodes& nodes, std::uint32_t cell) const {
+    const Sphere& own = packing_.spheres[cell];
+    Opened opened;
+    opened.cell = open_cell(region, nodes, own);
+    const std::vector<NodePiece> pieces = find_pieces(nodes.box, opened.cell.is_void, opened.labels);
+    const auto piece = std::ranges::find_if(pieces, [&](const NodePiece& candidate) {
+      return volume_of_nodes(candidate.size) >= kLeastVolume &&
+             takes_least_ball(region, nodes, opened.labels, candidate.label, own);
+    });
+    if (piece == pieces.end()) return opened;
+    constexpr std::size_t kFewNodes = 8;
+    opened.piece = piece->label;
+    opened.has_others = std::any_of(std::next(piece), pieces.end(),
+                                    [](const NodePiece& other) { return other.size > kFewNodes; });
+    return opened;
+  }
+
+  PieceSurface surface_of(const CellRegion& region, const CellNodes& nodes, const Opened& opened) const {
+    const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
+    return surface_of_piece(nodes.box, opened.cell, nodes, opened.labels, *opened.piece, placer);
+  }
+
+  // Appends the void that the piece leaves under a roof, if any, and takes it out of `nodes`, of which later pieces
+  // are made; what is above the roof may be one of these.
+  void add_below_roof(std::uint32_t cell, std::span<const CellPlane> planes, CellNodes& nodes,
+                      const Opened& opened, std::vector<CellVoid>& voids) const {
+    // Of what a ceiling may be wide for the nodes, which tell only about where it ends: the surface is measured.
+    for (const double share : {1.0, 0.6, 0.0}) {
+      const std::optional<Roofed> roofed = put_roof(planes, nodes, opened, cell, share);
+      if (!roofed) continue;
+      const CellRegion region(roofed->planes, surface_, packing_.limits.wall);
+      const PieceSurface surface = surface_of(region, roofed->nodes, roofed->opened);
+      if (const auto loose = middle_of_loose_solid(surface)) {
+        keep_attached(nodes, *loose);
+        return;
+      }
+      CellVoid made =
+          make(cell, region, surface, runs_of_piece(nodes.box, roofed->opened.labels, *roofed->opened.piece));
+      if (!is_bridged(made.surface)) continue;
+      voids.push_back(std::move(made));
+      keep_away_from(nodes, roofed->opened.labels, *roofed->opened.piece);
+      return;
+    }
+    fill(nodes, opened);
+  }
+
+  bool is_bridged(const Mesh& surface) const {
+    const Roof& roof = packing_.limits.roof;
+    const double allowed = roof.bridge() + shape_.tolerance / 2;
+    double widest = 0;
+    for (const Ceiling& ceiling : ceilings_of(surface, surface.triangles, roof)) {
+      if (ceiling.bound() > allowed) widest = widest_disc(ceiling, widest);
+    }
+    return widest <= allowed;
+  }
+
+  // The room below one roof leaves one piece.
+  std::optional<Roofed> put_roof(std::span<const CellPlane> planes, const CellNodes& nodes,
+                                 const Opened& opened, std::uint32_t cell, double share) const {
+    constexpr int kMostTries = 3;
+    const Roof& roof = packing_.limits.roof;
+    Roofed roofed{{planes.begin(), planes.end()}, nodes, opened};
+    std::vector<FlatCeiling> ceilings;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+      const CellRegion region(roofed.planes, surface_, packing_.limits.wall);
+      const std::vector<FlatCeiling> found =
+          flat_ceilings(region, roofed.nodes, roofed.opened.labels, *roofed.opened.piece, roof, share);
+      if (found.empty()) return roofed;
+      ceilings.insert(ceilings.end(), found.begin(), found.end());
+      const std::vector<CellPlane> sides = roof_below(ceilings, nodes, opened.labels, *opened.piece, roof);
+      if (sides.empty()) return std::nullopt;
+      roofed = {{planes.begin(), planes.end()}, nodes, {}};
+      roofed.planes.insert(roofed.planes.end(), sides.begin(), sides.end());
+      keep_behind(roofed.nodes, sides);
+      roofed.opened = open(CellRegion(roofed.planes, surface_, packing_.limits.wall), roofed.nodes, cell);
+      if (!roofed.opened.piece) return std::nullopt;
+    }
+    return roofed;
+  }
+
+  static void fill(CellNodes& nodes, const Opened& opened) {
+    for (std::size_t node = 0; node < nodes.box.size(); ++node)
+      if (opened.labels[node] == *opened.piece) nodes.depth[node] = -1;
+  }
+
+  static void keep_behind(CellNodes& nodes, std::span<const CellPlane> planes) {
+    const NodeBox& box = nodes.box;
+    for (std::int32_t k = 0; k < box.count_z; ++k) {
+      for (std::int32_t j = 0; j < box.count_y; ++j) {
+        for (std::int32_t i = 0; i < box.count_x; ++i) {
+          const std::size_t node = box.index(i, j, k);
+          if (!nodes.has_ball(node)) continue;
+          const Vec3d at = box.at(i, j, k);
+          for (const CellPlane& plane : planes) limit(nodes, node, plane.offset - dot(plane.normal, at));
+        }
+      }
+    }
+  }
+
   double volume_of_nodes(std::size_t count) const {
     return static_cast<double>(count) * lattice_.spacing * lattice_.spacing * lattice_.spacing;
   }

@@ -10,12 +10,7 @@
 
 namespace aerate {
 
-// A facet is part of a ceiling if it leans out by so much more than the overhang angle: the facets of a wall
-// that leans by just that angle lean a little more and a little less.
-inline constexpr double kCeilingMarginDegrees = 5;
-
-// The ceilings of a mesh's voids: facets that join along edges and lean out of the vertical by at least the
-// overhang angle and kCeilingMarginDegrees.
+// The ceilings (core/ceiling.h) of a mesh's voids.
 struct Ceilings {
   std::size_t count = 0;
   // Diameter of the largest disc that fits into one, projected along `roof.up`, to 0.001 mm.

@@ -93,7 +93,7 @@ std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const Ex
       read_back,
       expected.drainage != nullptr ? std::span(&all, 1) : expected.solid.of(PartKind::void_surface), roof,
       monitor);
-  if (expected.cells == nullptr) require_bridged(ceilings, roof, expected.tolerance);
+  require_bridged(ceilings, roof, expected.tolerance);
   return ceilings;
 }
 

@@ -185,11 +185,7 @@ struct HollowCommand {
 
   HollowOptions with_cells(HollowOptions options) const {
     options.packing.process = sized_for_cells(std::move(options.packing.process), cell_size);
-    const PackingLimits limits = options.packing.limits();
-    if (!options.modifiers && limits.roof.shapes(limits.max_radius))
-      throw UsageError(
-          "--shape cells: cells get no roofs so far, and ceilings are limited here",
-          "--as modifiers leaves the model solid; --bridge of twice --max-radius limits nothing");
+    options.packing.is_for_cells = true;
     options.cells = {
         fillet.value_or(options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet)};
     return options;

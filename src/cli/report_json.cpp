@@ -2,6 +2,7 @@
 
 #include "cli/json_parts.h"
 #include "cli/reports.h"
+#include "core/ceiling.h"
 #include "core/overhang.h"
 #include "printing/slicers/slicers.h"
 #include "printing/strength.h"

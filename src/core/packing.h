@@ -18,6 +18,9 @@ struct PackingLimits {
   double min_radius = 0;  // smaller spheres are dropped
   double max_radius = 0;  // radius of the largest sphere
   Roof roof = {};
+  // An adaptive packing starts from square layers of the largest spheres that are level along `roof.up`, if that is an
+  // axis of the model: the upper faces of cells between such spheres lean by just 45 degrees.
+  bool in_level_squares = false;
 };
 
 // Why candidates of a packing were not kept; each candidate is counted once.

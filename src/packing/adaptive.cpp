@@ -40,6 +40,7 @@ kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits, 
   input.parameters.max_radius = limits.max_radius;
   input.parameters.max_count = stop.max_count;
   input.parameters.roof = limits.roof;
+  input.parameters.in_level_squares = limits.in_level_squares;
   if (stop.target_density < 1) {
     input.parameters.max_volume = stop.target_density * stop.volume.value_or(input.volume);
   }

@@ -162,7 +162,7 @@ ProcessChoice sized_for(const PreparedModel& model, const PackingRequest& reques
   first_alone.max_count = 1;
   first_alone.volume = model.inspection.filled_volume;
   const Packing largest =
-      request.method->pack(model.mesh, request.limits(), first_alone, monitor, request.device);
+      request.method->pack(model.mesh, request.sphere_limits(), first_alone, monitor, request.device);
   return largest.spheres.empty() ? request.process
                                  : evenly_large(request.process, largest.spheres.front().radius);
 }
@@ -174,6 +174,7 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
     request.process = sized_for(model, request, monitor);
   auto [packing, surface] = pack_model(model, request, monitor);
   if (options.cells) {
+    packing.limits = request.limits();
     auto [cells, drainage, carved] =
         carve_as_cells(model, surface, packing, request.process, options, monitor);
     warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);

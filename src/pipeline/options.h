@@ -35,7 +35,20 @@ struct PackingRequest {
   // If given, the least radius is the least with which a void saves filament in this print.
   std::optional<PrintSettings> pays_in = std::nullopt;
 
+  // The spheres' cells become voids, and get the roofs that the spheres then do without.
+  bool is_for_cells = false;
+
   PackingLimits limits() const { return packing_limits(process); }
+  // Of the spheres themselves.
+  PackingLimits sphere_limits() const {
+    PackingLimits of_spheres = limits();
+    if (!is_for_cells || !of_spheres.roof.limits_ceilings()) return of_spheres;
+    // Faces of cells that lean by 45 degrees need no roofs where that is allowed.
+    constexpr double kSineOfSquares = 0.70710678;
+    of_spheres.in_level_squares = of_spheres.roof.sine >= kSineOfSquares;
+    of_spheres.roof.widest_ball = Roof{}.widest_ball;
+    return of_spheres;
+  }
 };
 
 // For reports.

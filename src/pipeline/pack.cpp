@@ -19,7 +19,7 @@ namespace {
 
 Packing given_packing(const PackingRequest& request) {
   Packing packing;
-  packing.limits = request.limits();
+  packing.limits = request.sphere_limits();
   packing.spheres = read_sphere_table(request.spheres);
   packing.statistics.candidates = packing.spheres.size();
   packing.device.reason = "the spheres were given";
@@ -84,10 +84,10 @@ void require_room_for_roofs(const PackingMethod& method, const PackingLimits& li
 
 Packing pack_unverified(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
   if (!request.spheres.empty()) return given_packing(request);
-  require_room_for_roofs(*request.method, request.limits());
+  require_room_for_roofs(*request.method, request.sphere_limits());
   PackingStop stop = request.stop;
   stop.volume = model.inspection.filled_volume;
-  return request.method->pack(model.mesh, request.limits(), stop, monitor, request.device);
+  return request.method->pack(model.mesh, request.sphere_limits(), stop, monitor, request.device);
 }
 
 // Of what is filled: more than this lies in several parts.
@@ -96,7 +96,7 @@ constexpr double kMostlyOverlapped = 0.5;
 // Says what would fit, and which limit stands in the way.
 [[noreturn]] void refuse_empty(const PreparedModel& model, const SurfaceIndex& surface,
                                const PackingRequest& request, Monitor& monitor) {
-  const PackingLimits limits = request.limits();
+  const PackingLimits limits = request.sphere_limits();
   const std::string file = model.input.path.filename().string();
   const Sphere largest = largest_inscribed_sphere(surface, monitor);
   // Rounded first, so that nothing reads as -0.0.

@@ -1,0 +1,357 @@
+#include "printing/cells/piece_roof.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "core/disjoint_sets.h"
+#include "core/upright.h"
+#include "kernels/constants.h"
+
+namespace aerate {
+namespace {
+
+constexpr int kSides = 8;
+
+// How far a ceiling may lean beyond the overhang angle, degrees: what is measured has a margin of 5.
+constexpr double kMarginDegrees = 2;
+
+// Half of what a flat top may be wide, for centres of balls: the balls' own tops take the rest of the bridge.
+double half_top(const Roof& roof, double ball_radius) {
+  return std::max(0.0, roof.flat_radius() - ball_radius * roof.cosine);
+}
+
+// Where the balls' centres end beside a node, and which way.
+struct Bound {
+  Vec3d outward{0, 0, 0};
+  double depth = kInfinity;
+};
+
+class CeilingFinder {
+ public:
+  CeilingFinder(const CellRegion& region, const CellNodes& nodes, const std::vector<std::int32_t>& labels,
+                std::int32_t piece, const Roof& roof, double share)
+      : region_(region),
+        nodes_(nodes),
+        labels_(labels),
+        piece_(piece),
+        roof_(roof),
+        frame_(roof.up),
+        widest_(2 * share * half_top(roof, nodes.ball_radius)) {}
+
+  std::vector<FlatCeiling> find() {
+    const NodeBox& box = nodes_.box;
+    for (std::int32_t k = 0; k < box.count_z; ++k) {
+      for (std::int32_t j = 0; j < box.count_y; ++j) {
+        for (std::int32_t i = 0; i < box.count_x; ++i) look_at(i, j, k);
+      }
+    }
+    return those_too_wide();
+  }
+
+ private:
+  struct Found {
+    std::size_t node;
+    Vec3d at;
+    Vec3d centre;  // of the ball that touches the ceiling
+  };
+
+  void look_at(std::int32_t i, std::int32_t j, std::int32_t k) {
+    const std::size_t node = nodes_.box.index(i, j, k);
+    if (labels_[node] != piece_ || !nodes_.is_outermost(node)) return;
+    const Vec3d at = nodes_.box.at(i, j, k);
+    const Bound bound = bound_at(node, at);
+    const auto depth = static_cast<double>(nodes_.depth[node]);
+    // Where something else than the region ends the piece, only nodes tell.
+    if (bound.depth > depth + 0.01 * nodes_.box.lattice.spacing) {
+      if (is_below_solid(at)) found_.push_back({node, at, at});
+      return;
+    }
+    const double least = std::sin(std::asin(roof_.sine) + kMarginDegrees * std::numbers::pi / 180);
+    if (dot(bound.outward, roof_.up) > least)
+      found_.push_back({node, at, at + bound.outward * (bound.depth - nodes_.ball_radius)});
+  }
+
+  Bound bound_at(std::size_t node, Vec3d at) const {
+    Bound nearest;
+    for (const CellPlane& plane : region_.planes()) {
+      const double depth = plane.offset - dot(plane.normal, at);
+      if (depth < nearest.depth) nearest = {plane.normal, depth};
+    }
+    const std::uint32_t facet = nodes_.facet[node];
+    if (facet == kNone) return nearest;
+    const Vec3d way = region_.nearest_on(facet, at) - at;
+    const double depth = length(way) - region_.wall();
+    return depth < nearest.depth ? Bound{normalised(way), depth} : nearest;
+  }
+
+  // No ball's centre in the cone above that a ceiling which carries itself would leave open.
+  bool is_below_solid(Vec3d at) const {
+    constexpr double kLayers = 2;
+    const double rise = kLayers * nodes_.box.lattice.spacing;
+    const double aside = rise * roof_.sine / roof_.cosine;
+    if (has_ball_at(at + roof_.up * rise)) return false;
+    for (int side = 0; side < kSides; ++side) {
+      const double angle = 2 * std::numbers::pi * side / kSides;
+      const Vec3d way = frame_.x * std::cos(angle) + frame_.y * std::sin(angle);
+      if (has_ball_at(at + roof_.up * rise + way * aside)) return false;
+    }
+    return true;
+  }
+
+  bool has_ball_at(Vec3d p) const {
+    const NodeBox& box = nodes_.box;
+    const Vec3d place = (p - box.at(0, 0, 0)) * (1 / box.lattice.spacing);
+    const auto i = static_cast<std::int32_t>(std::lround(place.x));
+    const auto j = static_cast<std::int32_t>(std::lround(place.y));
+    const auto k = static_cast<std::int32_t>(std::lround(place.z));
+    if (i < 0 || j < 0 || k < 0 || i >= box.count_x || j >= box.count_y || k >= box.count_z) return false;
+    const std::size_t node = box.index(i, j, k);
+    return labels_[node] == piece_ && nodes_.has_ball(node);
+  }
+
+  // Found places that are beside each other are one ceiling.
+  std::vector<FlatCeiling> those_too_wide() const {
+    const NodeBox& box = nodes_.box;
+    DisjointSets sets(found_.size());
+    const auto number = [&](std::size_t node) {
+      const auto at = std::ranges::lower_bound(found_, node, {}, &Found::node);
+      return at != found_.end() && at->node == node ? static_cast<std::size_t>(at - found_.begin())
+                                                    : found_.size();
+    };
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      const std::size_t node = found_[i].node;
+      for (const std::size_t layer : {node, node + box.step_z()}) {
+        for (const std::size_t row : {layer - box.step_y(), layer, layer + box.step_y()}) {
+          for (const std::size_t next : {row - 1, row, row + 1}) {
+            const std::size_t other = next > node ? number(next) : found_.size();
+            if (other < found_.size())
+              sets.join(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other));
+          }
+        }
+      }
+    }
+    std::map<std::uint32_t, std::vector<Vec3d>> ceilings;
+    for (std::uint32_t i = 0; i < found_.size(); ++i)
+      ceilings[sets.root(i)].push_back(frame_.to_frame(found_[i].at));
+    std::map<std::uint32_t, bool> is_too_wide;
+    for (const auto& [root, places] : ceilings) is_too_wide[root] = widest_disc(places) > widest_;
+    std::vector<FlatCeiling> result;
+    for (std::uint32_t i = 0; i < found_.size(); ++i)
+      if (is_too_wide[sets.root(i)]) result.push_back({found_[i].centre});
+    return result;
+  }
+
+  // Of those that fit into squares of a grid, seen from above, that places are in, less one square.
+  double widest_disc(const std::vector<Vec3d>& places) const {
+    // So that nodes beside each other leave no square between them.
+    const double side =
+        nodes_.box.lattice.spacing * (std::abs(roof_.up.x) + std::abs(roof_.up.y) + std::abs(roof_.up.z));
+    double x0 = kInfinity, y0 = kInfinity, x1 = -kInfinity, y1 = -kInfinity;
+    for (const Vec3d p : places) {
+      x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
+      y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
+    }
+    const auto columns = static_cast<std::size_t>((x1 - x0) / side) + 3;
+    const auto rows = static_cast<std::size_t>((y1 - y0) / side) + 3;
+    // Of each square how many squares around it are in the ceiling too.
+    std::vector<std::uint16_t> rings(columns * rows, 0);
+    for (const Vec3d p : places) {
+      const auto column = static_cast<std::size_t>((p.x - x0) / side + 0.5) + 1;
+      const auto row = static_cast<std::size_t>((p.y - y0) / side + 0.5) + 1;
+      rings[row * columns + column] = 1;
+    }
+    std::uint16_t most = 0;
+    const auto at = [&](std::size_t row, std::size_t column) { return rings[row * columns + column]; };
+    for (std::size_t row = 1; row + 1 < rows; ++row) {
+      for (std::size_t column = 1; column + 1 < columns; ++column) {
+        if (at(row, column) == 0) continue;
+        const auto least = std::min({at(row - 1, column - 1), at(row - 1, column), at(row, column - 1)});
+        rings[row * columns + column] = static_cast<std::uint16_t>(least + 1);
+        most = std::max(most, rings[row * columns + column]);
+      }
+    }
+    return (most - 1) * side;
+  }
+
+  const CellRegion& region_;
+  const CellNodes& nodes_;
+  const std::vector<std::int32_t>& labels_;
+  std::int32_t piece_;
+  const Roof& roof_;
+  UprightFrame frame_;
+  double widest_;             // disc in a ceiling that is left, mm
+  std::vector<Found> found_;  // ascending by node
+};
+
+// In the frame of the roof. A point is below side i if dot(side, p) <= offset[i], where `side` has length 1 seen
+// from above and rises by the tangent of the overhang angle.
+struct Tent {
+  std::array<double, kSides> offset{};
+  double top = kInfinity;
+};
+
+class TentFinder {
+ public:
+  TentFinder(std::span<const FlatCeiling> ceilings, const CellNodes& nodes,
+             const std::vector<std::int32_t>& labels, std::int32_t piece, const Roof& roof)
+      : roof_(roof),
+        frame_(roof.up),
+        tangent_(roof.sine / roof.cosine),
+        half_top_(half_top(roof, nodes.ball_radius)),
+        ball_radius_(nodes.ball_radius) {
+    for (int i = 0; i < kSides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kSides;
+      sides_[static_cast<std::size_t>(i)] = {std::cos(angle), std::sin(angle), tangent_};
+    }
+    for (const FlatCeiling& ceiling : ceilings) ceilings_.push_back(frame_.to_frame(ceiling.centre));
+    sample(nodes, labels, piece);
+  }
+
+  std::vector<CellPlane> find() const {
+    Tent best;
+    std::size_t most = 0;
+    for (const auto& [held, under] : best_places()) {
+      for (int kept = 0; kept < kSides / 2; ++kept) {
+        const Tent tent = widened(tent_under(under), kept);
+        const std::size_t count = count_in(tent);
+        if (count <= most) continue;
+        most = count;
+        best = tent;
+      }
+    }
+    return most == 0 ? std::vector<CellPlane>{} : planes_of(best);
+  }
+
+ private:
+  // Some of the balls' centres, evenly.
+  void sample(const CellNodes& nodes, const std::vector<std::int32_t>& labels, std::int32_t piece) {
+    constexpr std::size_t kMost = 4000;
+    const NodeBox& box = nodes.box;
+    const auto is_in = [&](std::size_t node) { return labels[node] == piece && nodes.has_ball(node); };
+    std::size_t count = 0;
+    for (std::size_t node = 0; node < box.size(); ++node) count += is_in(node) ? 1U : 0U;
+    std::int32_t step = 1;
+    while (count / static_cast<std::size_t>(step * step * step) > kMost) ++step;
+    for (std::int32_t k = 0; k < box.count_z; k += step) {
+      for (std::int32_t j = 0; j < box.count_y; j += step) {
+        for (std::int32_t i = 0; i < box.count_x; i += step)
+          if (is_in(box.index(i, j, k))) samples_.push_back(frame_.to_frame(box.at(i, j, k)));
+      }
+    }
+    for (const Vec3d p : samples_) highest_ = std::max(highest_, p.z);
+  }
+
+  // How high the top of a roof may be at a place seen from above.
+  double top_at(double x, double y) const {
+    double top = highest_;
+    for (const Vec3d& f : ceilings_) {
+      if (f.z >= top) continue;
+      double aside = 0;
+      for (const Vec3d& side : sides_) aside = std::max(aside, side.x * (f.x - x) + side.y * (f.y - y));
+      top = std::min(top, f.z + std::max(0.0, aside - half_top_) / tangent_);
+    }
+    return top;
+  }
+
+  // By how many samples the roofs there hold, the most first.
+  std::vector<std::pair<std::size_t, Vec3d>> best_places() const {
+    constexpr int kAcross = 14;
+    constexpr std::size_t kTaken = 12;
+    double x0 = kInfinity, y0 = kInfinity, x1 = -kInfinity, y1 = -kInfinity;
+    for (const Vec3d& p : samples_) {
+      x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
+      y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
+    }
+    std::vector<std::pair<std::size_t, Vec3d>> places;
+    for (int row = 0; row < kAcross; ++row) {
+      for (int column = 0; column < kAcross; ++column) {
+        const double x = x0 + (x1 - x0) * (column + 0.5) / kAcross,
+                     y = y0 + (y1 - y0) * (row + 0.5) / kAcross;
+        const Vec3d under{x, y, top_at(x, y)};
+        const std::size_t held = count_in(tent_under(under));
+        if (held > 0) places.emplace_back(held, under);
+      }
+    }
+    std::ranges::stable_sort(places, [](const auto& a, const auto& b) { return a.first > b.first; });
+    if (places.size() > kTaken) places.resize(kTaken);
+    return places;
+  }
+
+  Tent tent_under(Vec3d under) const {
+    Tent tent{.top = under.z};
+    for (std::size_t i = 0; i < kSides; ++i) tent.offset[i] = dot(sides_[i], under) + half_top_;
+    return tent;
+  }
+
+  // With all sides moved out as far as the ceilings allow, but two that face each other: the top gets no wider.
+  Tent widened(Tent tent, int kept) const {
+    constexpr int kHalf = kSides / 2, kQuarter = kSides / 4;
+    for (const int turn : {kQuarter, kQuarter + kHalf, 1, 1 + kHalf, kSides - 1, kHalf - 1}) {
+      const auto moved = static_cast<std::size_t>((kept + turn) % kSides);
+      double offset = kInfinity;
+      for (const Vec3d& f : ceilings_) {
+        if (f.z < tent.top && !is_outside(f, tent, moved)) offset = std::min(offset, dot(sides_[moved], f));
+      }
+      tent.offset[moved] = offset;
+    }
+    return tent;
+  }
+
+  // Of a side other than this one.
+  bool is_outside(const Vec3d& p, const Tent& tent, std::size_t other) const {
+    constexpr double kRounding = 1e-9;
+    for (std::size_t i = 0; i < kSides; ++i)
+      if (i != other && dot(sides_[i], p) >= tent.offset[i] - kRounding) return true;
+    return false;
+  }
+
+  std::size_t count_in(const Tent& tent) const {
+    std::size_t count = 0;
+    for (const Vec3d& p : samples_) {
+      bool is_in = p.z <= tent.top;
+      for (std::size_t i = 0; is_in && i < kSides; ++i) is_in = dot(sides_[i], p) <= tent.offset[i];
+      count += is_in ? 1U : 0U;
+    }
+    return count;
+  }
+
+  std::vector<CellPlane> planes_of(const Tent& tent) const {
+    std::vector<CellPlane> planes;
+    const auto add = [&](Vec3d in_frame, double offset) {
+      const Vec3d normal = frame_.x * in_frame.x + frame_.y * in_frame.y + frame_.z * in_frame.z;
+      planes.push_back({normal, offset + ball_radius_, kNone});
+    };
+    for (std::size_t i = 0; i < kSides; ++i)
+      if (tent.offset[i] < kInfinity) add(sides_[i] * roof_.cosine, tent.offset[i] * roof_.cosine);
+    add({0, 0, 1}, tent.top);
+    return planes;
+  }
+
+  const Roof& roof_;
+  UprightFrame frame_;
+  double tangent_, half_top_, ball_radius_;
+  std::array<Vec3d, kSides> sides_;
+  std::vector<Vec3d> ceilings_, samples_;  // in the frame
+  double highest_ = -kInfinity;
+};
+
+}  // namespace
+
+std::vector<FlatCeiling> flat_ceilings(const CellRegion& region, const CellNodes& nodes,
+                                       const std::vector<std::int32_t>& labels, std::int32_t piece,
+                                       const Roof& roof, double share) {
+  return CeilingFinder(region, nodes, labels, piece, roof, share).find();
+}
+
+std::vector<CellPlane> roof_below(std::span<const FlatCeiling> ceilings, const CellNodes& nodes,
+                                  const std::vector<std::int32_t>& labels, std::int32_t piece,
+                                  const Roof& roof) {
+  return TentFinder(ceilings, nodes, labels, piece, roof).find();
+}
+
+}  // namespace aerate
