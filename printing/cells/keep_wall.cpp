@@ -2,10 +2,23 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/facet_distance.h"
 
 namespace aerate {
+namespace {
+
+// Or the wall, if that is less.
+double distance_to_model(const kernels::Facet& facet, const CellRegion& region) {
+  const NearFacets& model = region.near_facets();
+  FacetDistance distance(facet, region.wall());
+  model.for_each_near(distance.middle(), region.wall() + distance.reach(),
+                      [&](std::uint32_t i) { distance.look_at(model.facet(i)); });
+  return distance.distance();
+}
+
+}  // namespace
 
 double keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
                  const std::vector<Triangle>& triangles) {
@@ -21,8 +34,7 @@ double keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
       if (is_moved[t[0]] == 0 && is_moved[t[1]] == 0 && is_moved[t[2]] == 0) continue;
       const kernels::Facet facet{to_float(vertices[t[0]].at), to_float(vertices[t[1]].at),
                                  to_float(vertices[t[2]].at)};
-      const double missing =
-          region.wall() - distance_to_surface(facet, region.surface().bvh(), region.wall());
+      const double missing = region.wall() - distance_to_model(facet, region);
       if (missing <= 0) continue;
       is_kept = false;
       for (const std::uint32_t v : t) push[v] = std::max(push[v], kFurther * missing + kLeastStep);

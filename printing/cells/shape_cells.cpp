@@ -47,12 +47,17 @@ class CellShaper {
  public:
   CellShaper(const SurfaceIndex& surface, const Packing& packing, const CellShape& shape,
              const NodeLattice& lattice, double margin)
-      : surface_(surface), packing_(packing), shape_(shape), lattice_(lattice), margin_(margin) {}
+      : surface_(surface),
+        near_(surface.bvh()),
+        packing_(packing),
+        shape_(shape),
+        lattice_(lattice),
+        margin_(margin) {}
 
   // `solid`: places about which nothing is taken out.
   std::vector<CellVoid> shape(std::uint32_t cell, std::span<const CellPlane> planes, const Box3d& box,
                               std::span<const Vec3d> solid) const {
-    const CellRegion region(planes, surface_, packing_.limits.wall);
+    const CellRegion region(planes, surface_, near_, packing_.limits.wall);
     CellNodes nodes = look_at_nodes(region, box, shape_.fillet, lattice_);
     for (const Vec3d place : solid) keep_solid_about(nodes, place);
     std::vector<CellVoid> voids;
@@ -264,6 +269,7 @@ class CellShaper {
   }
 
   const SurfaceIndex& surface_;
+  NearFacets near_;
   const Packing& packing_;
   const CellShape& shape_;
   const NodeLattice& lattice_;
