@@ -7,6 +7,7 @@
 
 #include "core/cells.h"
 #include "printing/cells/cell_region.h"
+#include "printing/cells/shared_work.h"
 
 namespace aerate {
 
@@ -61,6 +62,6 @@ struct CellNodes {
 // has two nodes without a ball on each side, and room for balls. Throws std::length_error if there are more than
 // 2^26 of them.
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
-                        const NodeLattice& lattice);
+                        const NodeLattice& lattice, SharedWork& work);
 
 }  // namespace aerate

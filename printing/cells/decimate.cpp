@@ -69,7 +69,8 @@ class Decimation {
   }
 
   // One pass: how many edges were collapsed.
-  std::size_t pass(double most_squared) {
+  std::size_t pass(double most_squared, SharedWork& work) {
+    work.check_interrupted();
     index();
     candidates_.clear();
     for (const Triangle& t : triangles_) {
@@ -90,8 +91,10 @@ class Decimation {
     busy_.assign(points_.size(), 0);
     renamed_.resize(points_.size());
     for (std::uint32_t v = 0; v < renamed_.size(); ++v) renamed_[v] = v;
-    std::size_t count = 0;
+    std::size_t count = 0, looked_at = 0;
+    constexpr std::size_t kBetween = std::size_t{1} << 16;
     for (const Collapse& c : candidates_) {
+      if (++looked_at % kBetween == 0) work.check_interrupted();
       if (busy_[c.gone] != 0 || busy_[c.kept] != 0 || !keeps_topology(c)) continue;
       const std::optional<double> deviation = deviation_after(c);
       if (!deviation) continue;
@@ -234,14 +237,16 @@ class Decimation {
 
 }  // namespace
 
-Decimated decimate(const std::vector<Vec3d>& positions, std::vector<Triangle> triangles, double tolerance) {
+Decimated decimate(const std::vector<Vec3d>& positions, std::vector<Triangle> triangles, double tolerance,
+                   SharedWork& work) {
   // Mean squared distances, of what may be the most.
   constexpr double kSteps[] = {1.0 / 1024, 1.0 / 64, 1.0 / 16, 0.25};
   constexpr double kWorthIt = 0.02;  // of the triangles
   Decimation decimation(positions, std::move(triangles), tolerance);
   for (const double step : kSteps) {
     const double most = step * tolerance * tolerance;
-    while (static_cast<double>(decimation.pass(most)) * 2 > kWorthIt * static_cast<double>(decimation.size()))
+    while (static_cast<double>(decimation.pass(most, work)) * 2 >
+           kWorthIt * static_cast<double>(decimation.size()))
       ;
   }
   return std::move(decimation).result();

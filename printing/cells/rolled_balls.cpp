@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "printing/cells/nearest_in_halfspaces.h"
 
@@ -33,20 +34,19 @@ class Roller {
   Roller(const CellRegion& region, const CellNodes& nodes, OpenedCell& opened)
       : region_(region), nodes_(nodes), opened_(opened) {}
 
-  void roll(const Sphere& own) {
+  void roll(const Sphere& own, SharedWork& work) {
     const NodeBox& box = nodes_.box;
-    for (std::int32_t k = 0; k < box.count_z; ++k) {
-      for (std::int32_t j = 0; j < box.count_y; ++j) {
-        for (std::int32_t i = 0; i < box.count_x; ++i) {
-          const std::size_t node = box.index(i, j, k);
-          if (!nodes_.is_outermost(node) || is_surrounded(node)) continue;
-          const Vec3d at = box.at(i, j, k);
-          add({at, static_cast<double>(nodes_.depth[node]), nodes_.facet[node], is_near_surface(node)});
-          add_in_edge(node, at);
-        }
-      }
-    }
-    if (has_room_for(own)) add({own.centre, own.radius, kNone, true});
+    const auto layers = static_cast<std::size_t>(box.count_z);
+    std::vector<std::vector<RolledBall>> of_layer(layers);
+    work.for_each(layers, 1, [&](std::size_t k) { of_layer[k] = balls_of(static_cast<std::int32_t>(k)); });
+    for (const std::vector<RolledBall>& balls : of_layer)
+      opened_.balls.insert(opened_.balls.end(), balls.begin(), balls.end());
+    if (has_room_for(own)) opened_.balls.push_back({own.centre, own.radius, kNone, true});
+    constexpr std::size_t kGrain = 8;
+    work.for_each_part(layers, kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::uint32_t ball = 0; ball < opened_.balls.size(); ++ball)
+        cover(ball, static_cast<std::int32_t>(first), static_cast<std::int32_t>(last) - 1);
+    });
   }
 
  private:
@@ -80,8 +80,24 @@ class Roller {
     return true;
   }
 
+  std::vector<RolledBall> balls_of(std::int32_t k) const {
+    const NodeBox& box = nodes_.box;
+    std::vector<RolledBall> balls;
+    for (std::int32_t j = 0; j < box.count_y; ++j) {
+      for (std::int32_t i = 0; i < box.count_x; ++i) {
+        const std::size_t node = box.index(i, j, k);
+        if (!nodes_.is_outermost(node) || is_surrounded(node)) continue;
+        const Vec3d at = box.at(i, j, k);
+        balls.push_back(
+            {at, static_cast<double>(nodes_.depth[node]), nodes_.facet[node], is_near_surface(node)});
+        if (const auto ball = ball_in_edge(node, at)) balls.push_back(*ball);
+      }
+    }
+    return balls;
+  }
+
   // Where two or more of what bounds the region are near, a ball in the edge or corner between them.
-  void add_in_edge(std::size_t node, Vec3d at) {
+  std::optional<RolledBall> ball_in_edge(std::size_t node, Vec3d at) const {
     constexpr double kBeyond = 1.5, kFarthest = 2.5, kLeastRadius = 0.9;
     const double spacing = nodes_.box.lattice.spacing, radius = nodes_.ball_radius;
     Halfspaces bounds;
@@ -106,28 +122,32 @@ class Roller {
         ++near;
       }
     }
-    if (near < 2) return;
+    if (near < 2) return std::nullopt;
     const Vec3d edge = bounds.nearest_to(at + outward * (kBeyond * spacing));
-    if (length(edge - at) > kFarthest * spacing) return;
+    if (length(edge - at) > kFarthest * spacing) return std::nullopt;
     double depth = region_.behind_planes(edge);
     const bool asks_surface = below < nodes_.deepest + kFarthest * spacing;
     if (asks_surface) {
       const SurfaceNearby surface = region_.surface_near(edge, region_.wall() + 2 * radius, facet);
       depth = std::min(depth, surface.distance - region_.wall());
     }
-    if (depth >= kLeastRadius * radius) add({edge, depth, facet, asks_surface});
+    if (depth < kLeastRadius * radius) return std::nullopt;
+    return RolledBall{edge, depth, facet, asks_surface};
   }
 
-  void add(const RolledBall& ball) {
+  // Nodes of some layers.
+  void cover(std::uint32_t number, std::int32_t first_layer, std::int32_t last_layer) {
     const NodeBox& box = nodes_.box;
+    const RolledBall& ball = opened_.balls[number];
     const double spacing = box.lattice.spacing;
-    const auto number = static_cast<std::uint32_t>(opened_.balls.size());
-    opened_.balls.push_back(ball);
     // Nodes just outside tell where the surface passes.
     const double reach = ball.radius + 1.2 * spacing;
     const Vec3d origin = box.at(0, 0, 0);
+    if (ball.centre.z + reach < origin.z + spacing * first_layer ||
+        ball.centre.z - reach > origin.z + spacing * last_layer)
+      return;
     const NodeRange layers(ball.centre.z, reach, origin.z, spacing, box.count_z);
-    for (std::int32_t k = layers.first; k <= layers.last; ++k) {
+    for (std::int32_t k = std::max(layers.first, first_layer); k <= std::min(layers.last, last_layer); ++k) {
       const double dz = square(origin.z + spacing * k - ball.centre.z);
       const double reach_y = std::sqrt(std::max(0.0, reach * reach - dz));
       const NodeRange rows(ball.centre.y, reach_y, origin.y, spacing, box.count_y);
@@ -191,12 +211,13 @@ std::array<bool, 256> make_well_composed() {
 
 // Takes nodes out of the void until every cube is well-composed: those without a ball of their own, or, where nodes
 // with one meet diagonally since the nodes between them were taken out, these.
-void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_void) {
+void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_void, SharedWork& work) {
   static const std::array<bool, 256> kWellComposed = make_well_composed();
   const NodeBox& box = nodes.box;
   for (bool changes = true; changes;) {
     changes = false;
     for (std::int32_t k = 0; k + 1 < box.count_z; ++k) {
+      work.check_interrupted();
       for (std::int32_t j = 0; j + 1 < box.count_y; ++j) {
         for (std::int32_t i = 0; i + 1 < box.count_x; ++i) {
           const std::array<std::size_t, 8> corners = cube_at(box, i, j, k);
@@ -218,16 +239,16 @@ void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_vo
 
 }  // namespace
 
-OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own) {
+OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own, SharedWork& work) {
   OpenedCell opened;
   opened.cover.assign(nodes.box.size(), kUncovered);
   opened.ball.assign(nodes.box.size(), kNone);
-  Roller(region, nodes, opened).roll(own);
+  Roller(region, nodes, opened).roll(own, work);
   const auto least = kLeastCover * static_cast<float>(nodes.box.lattice.spacing);
   opened.is_void.resize(nodes.box.size());
   for (std::size_t node = 0; node < nodes.box.size(); ++node)
     opened.is_void[node] = nodes.has_ball(node) || opened.cover[node] > least ? 1 : 0;
-  make_well_composed(nodes, opened.is_void);
+  make_well_composed(nodes, opened.is_void, work);
   return opened;
 }
 

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
 
@@ -20,15 +19,13 @@
 #include "printing/cells/keep_wall.h"
 #include "printing/cells/piece_surface.h"
 #include "printing/cells/rolled_balls.h"
+#include "printing/cells/shared_work.h"
 
 namespace aerate {
 namespace {
 
 // Slicers drop smaller shells, mm3 (docs/processes.md).
 constexpr double kLeastVolume = 1;
-
-// Cells between two questions to the monitor.
-constexpr std::size_t kCellsPerPiece = 64;
 
 // Of the tolerance, for taking out triangles; the rest is for the wall, which triangles that bend round the model
 // would not keep. And what decimation is told at first.
@@ -46,25 +43,26 @@ double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Tr
 class CellShaper {
  public:
   CellShaper(const SurfaceIndex& surface, const Packing& packing, const CellShape& shape,
-             const NodeLattice& lattice, double margin)
+             const NodeLattice& lattice, double margin, SharedWork& work)
       : surface_(surface),
         near_(surface.bvh()),
         packing_(packing),
         shape_(shape),
         lattice_(lattice),
-        margin_(margin) {}
+        margin_(margin),
+        work_(work) {}
 
   // `solid`: places about which nothing is taken out.
   std::vector<CellVoid> shape(std::uint32_t cell, std::span<const CellPlane> planes, const Box3d& box,
                               std::span<const Vec3d> solid) const {
     const CellRegion region(planes, surface_, near_, packing_.limits.wall);
-    CellNodes nodes = look_at_nodes(region, box, shape_.fillet, lattice_);
+    CellNodes nodes = look_at_nodes(region, box, shape_.fillet, lattice_, work_);
     for (const Vec3d place : solid) keep_solid_about(nodes, place);
     std::vector<CellVoid> voids;
     std::vector<std::int32_t> labels;
     constexpr int kMostPieces = 64;
     for (int rounds = 0; nodes.box.size() > 0 && rounds < kMostPieces; ++rounds) {
-      const OpenedCell opened = open_cell(region, nodes, packing_.spheres[cell]);
+      const OpenedCell opened = open_cell(region, nodes, packing_.spheres[cell], work_);
       const std::vector<NodePiece> pieces = find_pieces(nodes.box, opened.is_void, labels);
       const auto is_worth_it = [&](const NodePiece& piece) {
         return volume_of_nodes(piece.size) >= kLeastVolume &&
@@ -73,7 +71,8 @@ class CellShaper {
       const auto piece = std::ranges::find_if(pieces, is_worth_it);
       if (piece == pieces.end()) break;
       const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
-      const PieceSurface surface = surface_of_piece(nodes.box, opened, nodes, labels, piece->label, placer);
+      const PieceSurface surface =
+          surface_of_piece(nodes.box, opened, nodes, labels, piece->label, placer, work_);
       if (const auto loose = middle_of_loose_solid(surface)) {
         keep_attached(nodes, *loose);
         continue;
@@ -126,7 +125,7 @@ class CellShaper {
     constexpr int kMostTries = 5;
     Decimated fewer;
     for (int i = 1; i <= kMostTries; ++i) {
-      fewer = decimate(positions_of(dense), dense.triangles, i < kMostTries ? allowed : 0);
+      fewer = decimate(positions_of(dense), dense.triangles, i < kMostTries ? allowed : 0, work_);
       result.deviation = deviation(dense, fewer);
       if (result.deviation <= kShareForDecimation * shape_.tolerance) break;
       allowed *= std::clamp(0.85 * kShareForDecimation * shape_.tolerance / result.deviation, 0.3, 0.85);
@@ -134,7 +133,7 @@ class CellShaper {
     std::vector<PlacedVertex> vertices;
     vertices.reserve(fewer.vertices.size());
     for (const std::uint32_t v : fewer.vertices) vertices.push_back(dense.vertices[v]);
-    result.deviation += keep_wall(region, vertices, fewer.triangles);
+    result.deviation += keep_wall(region, vertices, fewer.triangles, work_);
     for (const PlacedVertex& vertex : vertices) result.surface.positions.push_back(to_float(vertex.at));
     result.surface.triangles = std::move(fewer.triangles);
     return result;
@@ -148,7 +147,7 @@ class CellShaper {
   }
 
   // How far the vertices that went are from what is left at most.
-  static double deviation(const PieceSurface& dense, const Decimated& fewer) {
+  double deviation(const PieceSurface& dense, const Decimated& fewer) const {
     std::vector<Vec3f> positions;
     positions.reserve(fewer.vertices.size());
     std::vector<char> is_left(dense.vertices.size(), 0);
@@ -157,18 +156,22 @@ class CellShaper {
       is_left[v] = 1;
     }
     const kernels::HostTriangleBvh bvh(positions, fewer.triangles);
-    double most = 0;
-    kernels::NearestFacet near{kInfinity, kNone};
-    for (std::size_t v = 0; v < dense.vertices.size(); ++v) {
-      if (is_left[v] != 0) continue;
-      // Vertices that follow each other are near each other.
-      const Vec3d at = dense.vertices[v].at;
-      if (near.facet != kNone)
-        near.distance_squared = kernels::distance_squared_to_facet(at, bvh.view().facets[near.facet]);
-      near = bvh.view().nearer_than(at, near);
-      most = std::max(most, near.distance_squared);
-    }
-    return std::sqrt(most);
+    const NearFacets facets(bvh.view());
+    std::vector<double> squared(dense.vertices.size(), 0);
+    constexpr std::size_t kGrain = 512;
+    work_.for_each_part(squared.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      kernels::NearestFacet near{kInfinity, kNone};
+      for (std::size_t v = first; v < last; ++v) {
+        if (is_left[v] != 0) continue;
+        // Vertices that follow each other are near each other.
+        const Vec3d at = dense.vertices[v].at;
+        if (near.facet != kNone)
+          near.distance_squared = kernels::distance_squared_to_facet(at, facets.facet(near.facet));
+        near = facets.nearer_than(at, near);
+        squared[v] = near.distance_squared;
+      }
+    });
+    return std::sqrt(*std::ranges::max_element(squared));
   }
 
   // Where a void would surround a piece of solid, which would then be loose: the middle of that.
@@ -274,6 +277,7 @@ class CellShaper {
   const CellShape& shape_;
   const NodeLattice& lattice_;
   double margin_;
+  SharedWork& work_;
 };
 
 // The voids of some cells, in their order.
@@ -293,23 +297,21 @@ std::vector<CellVoid> shape_some(const SurfaceIndex& surface, const Packing& pac
                     "coordinates in a mesh file are single precision",
                     largest, shape.tolerance),
         "move the model nearer to the origin, or raise --tolerance");
-  const CellShaper shaper(surface, packing, shape, cells.lattice, margin);
+  SharedWork work(monitor);
+  const CellShaper shaper(surface, packing, shape, cells.lattice, margin, work);
   std::vector<std::vector<CellVoid>> made(some.size());
   std::vector<char> is_too_large(some.size(), 0);
-  for (std::size_t first = 0; first < some.size(); first += kCellsPerPiece) {
-    monitor.check_interrupted();
-    tbb::parallel_for(first, std::min(some.size(), first + kCellsPerPiece), [&](std::size_t i) {
-      const std::uint32_t cell = some[i];
-      std::vector<Vec3d> solid_here;
-      for (const CellPlace& place : solid)
-        if (place.cell == cell) solid_here.push_back(place.at);
-      try {
-        made[i] = shaper.shape(cell, cells.planes.of(cell), cells.planes.boxes[cell], solid_here);
-      } catch (const std::length_error&) {
-        is_too_large[i] = 1;
-      }
-    });
-  }
+  work.for_each(some.size(), 1, [&](std::size_t i) {
+    const std::uint32_t cell = some[i];
+    std::vector<Vec3d> solid_here;
+    for (const CellPlace& place : solid)
+      if (place.cell == cell) solid_here.push_back(place.at);
+    try {
+      made[i] = shaper.shape(cell, cells.planes.of(cell), cells.planes.boxes[cell], solid_here);
+    } catch (const std::length_error&) {
+      is_too_large[i] = 1;
+    }
+  });
   if (std::ranges::find(is_too_large, 1) != is_too_large.end())
     throw UsageError(fmt::format("a cell is too large for a fillet of {:g} mm and a tolerance of {:g} mm",
                                  shape.fillet, shape.tolerance),

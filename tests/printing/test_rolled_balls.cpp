@@ -35,7 +35,9 @@ std::vector<std::size_t> void_of(const std::vector<std::array<std::int32_t, 3>>&
   const SurfaceIndex surface(test::make_box({-20, -20, -20}, {20, 20, 20}));
   const NearFacets near(surface.bvh());
   const CellRegion region({}, surface, near, 2);
-  const OpenedCell opened = open_cell(region, nodes, {{0, 0, 0}, 0.1, SphereKind::adaptive});
+  Monitor silent;
+  SharedWork work(silent);
+  const OpenedCell opened = open_cell(region, nodes, {{0, 0, 0}, 0.1, SphereKind::adaptive}, work);
   std::vector<std::size_t> result;
   for (std::size_t node = 0; node < opened.is_void.size(); ++node)
     if (opened.is_void[node] != 0) result.push_back(node);

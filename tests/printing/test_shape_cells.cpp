@@ -454,15 +454,32 @@ TEST(ShapeCells, SaysWhereACellIsTooLarge) {
       test::contains(test::message_of<UsageError>([&] { shaped(model, packing, fine); }), "too large"));
 }
 
-TEST(ShapeCells, StopsWhenInterrupted) {
-  class Interrupted : public Monitor {
-   public:
-    void check_interrupted() override { throw InterruptedError(); }
-  } monitor;
-  const Mesh model = test::make_box({0, 0, 0}, {20, 20, 20});
-  const Packing packing = packing_of({ball({10, 10, 10}, 7)});
-  EXPECT_THROW(shape_cells(SurfaceIndex(model), packing, planes_of(model, packing), kShape, monitor),
-               InterruptedError);
+// Asked to stop at some question, or at none.
+class StoppedAt : public Monitor {
+ public:
+  explicit StoppedAt(int question) : question_(question) {}
+  int asked() const { return asked_; }
+  void check_interrupted() override {
+    if (++asked_ == question_) throw InterruptedError();
+  }
+
+ private:
+  int question_, asked_ = 0;
+};
+
+TEST(ShapeCells, StopsWhenInterruptedWithinASingleCell) {
+  const Mesh model = test::make_box({0, 0, 0}, {30, 30, 30});
+  const Packing packing = packing_of({ball({15, 15, 15}, 12)});
+  const SurfaceIndex surface(model);
+  const CellPlanes planes = planes_of(model, packing);
+  StoppedAt none(0);
+  shape_cells(surface, packing, planes, kShape, none);
+  EXPECT_GT(none.asked(), 300);
+  for (const int question : {1, 2, 20, 100, 200, none.asked() / 2}) {
+    StoppedAt monitor(question);
+    EXPECT_THROW(shape_cells(surface, packing, planes, kShape, monitor), InterruptedError) << question;
+    EXPECT_LE(monitor.asked(), none.asked());
+  }
 }
 
 TEST(ShapeCells, CarvesTheVoidsInTheirOrder) {
