@@ -141,7 +141,6 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
                         const NodeLattice& lattice, SharedWork& work) {
   constexpr double kBlocksPerCell = 6;
-  constexpr std::size_t kMostNodes = std::size_t{1} << 26;
   const double spacing = lattice.spacing;
   CellNodes nodes;
   nodes.ball_radius = ball_radius;
@@ -163,7 +162,7 @@ CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ba
   box.count_x = count(balls->upper.x, lattice.origin.x, box.x);
   box.count_y = count(balls->upper.y, lattice.origin.y, box.y);
   box.count_z = count(balls->upper.z, lattice.origin.z, box.z);
-  if (box.size() > kMostNodes) throw std::length_error("a cell has more than 2^26 lattice nodes");
+  if (box.size() > kMostNodesOfCell) throw std::length_error("a cell has more than 2^26 lattice nodes");
   nodes.depth.assign(box.size(), -1.F);
   nodes.surface_depth.assign(box.size(), kFar);
   nodes.facet.assign(box.size(), kNone);

@@ -159,8 +159,11 @@ class Roller {
         for (std::int32_t i = row.first; i <= row.last; ++i) {
           const std::size_t node = first + static_cast<std::size_t>(i);
           if (nodes_.has_ball(node)) continue;
-          const auto cover = static_cast<float>(
-              ball.radius - std::sqrt(dyz + square(origin.x + spacing * i - ball.centre.x)));
+          const double squared = dyz + square(origin.x + spacing * i - ball.centre.x);
+          // Nearer to the middle than the node would have to be for more.
+          const double least = ball.radius - static_cast<double>(opened_.cover[node]);
+          if (least <= 0 || squared >= least * least) continue;
+          const auto cover = static_cast<float>(ball.radius - std::sqrt(squared));
           if (cover <= opened_.cover[node]) continue;
           opened_.cover[node] = cover;
           opened_.ball[node] = number;

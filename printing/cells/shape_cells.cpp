@@ -31,6 +31,9 @@ constexpr double kLeastVolume = 1;
 // would not keep. And what decimation is told at first.
 constexpr double kShareForDecimation = 0.35, kFirstShare = 0.25;
 
+// Of the tolerance, with what vertices were moved by to keep the wall; of what decimation was told, where it is more.
+constexpr double kMostDeviation = 1.2, kLessForWall = 0.6;
+
 double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Triangle>& triangles) {
   if (vertices.empty()) return 0;
   const Vec3d origin = vertices.front().at;
@@ -124,16 +127,20 @@ class CellShaper {
     double allowed = kFirstShare * shape_.tolerance;
     constexpr int kMostTries = 5;
     Decimated fewer;
+    std::vector<PlacedVertex> vertices;
     for (int i = 1; i <= kMostTries; ++i) {
       fewer = decimate(positions_of(dense), dense.triangles, i < kMostTries ? allowed : 0, work_);
       result.deviation = deviation(dense, fewer);
-      if (result.deviation <= kShareForDecimation * shape_.tolerance) break;
-      allowed *= std::clamp(0.85 * kShareForDecimation * shape_.tolerance / result.deviation, 0.3, 0.85);
+      if (i < kMostTries && result.deviation > kShareForDecimation * shape_.tolerance) {
+        allowed *= std::clamp(0.85 * kShareForDecimation * shape_.tolerance / result.deviation, 0.3, 0.85);
+        continue;
+      }
+      vertices.clear();
+      for (const std::uint32_t v : fewer.vertices) vertices.push_back(dense.vertices[v]);
+      result.deviation += keep_wall(region, vertices, fewer.triangles, work_);
+      if (result.deviation <= kMostDeviation * shape_.tolerance) break;
+      allowed *= kLessForWall;
     }
-    std::vector<PlacedVertex> vertices;
-    vertices.reserve(fewer.vertices.size());
-    for (const std::uint32_t v : fewer.vertices) vertices.push_back(dense.vertices[v]);
-    result.deviation += keep_wall(region, vertices, fewer.triangles, work_);
     for (const PlacedVertex& vertex : vertices) result.surface.positions.push_back(to_float(vertex.at));
     result.surface.triangles = std::move(fewer.triangles);
     return result;
@@ -280,6 +287,24 @@ class CellShaper {
   SharedWork& work_;
 };
 
+UsageError too_large(const CellShape& shape) {
+  return UsageError(fmt::format("a cell is too large for a fillet of {:g} mm and a tolerance of {:g} mm",
+                                shape.fillet, shape.tolerance),
+                    "give a larger --fillet or --tolerance, or a smaller --max-radius");
+}
+
+// Before any cell is looked at, from their boxes.
+void require_few_nodes(const CellVoids& cells, const CellShape& shape, std::span<const std::uint32_t> some) {
+  const double spacing = cells.lattice.spacing;
+  for (const std::uint32_t cell : some) {
+    const Vec3d extent = cells.planes.boxes[cell].upper - cells.planes.boxes[cell].lower;
+    // A cell without room for the ball has an empty box, or a flat one.
+    if (!(std::min({extent.x, extent.y, extent.z}) > 0)) continue;
+    if (extent.x * extent.y * extent.z > static_cast<double>(kMostNodesOfCell) * spacing * spacing * spacing)
+      throw too_large(shape);
+  }
+}
+
 // The voids of some cells, in their order.
 std::vector<CellVoid> shape_some(const SurfaceIndex& surface, const Packing& packing, const CellVoids& cells,
                                  const CellShape& shape, std::span<const std::uint32_t> some,
@@ -299,6 +324,7 @@ std::vector<CellVoid> shape_some(const SurfaceIndex& surface, const Packing& pac
         "move the model nearer to the origin, or raise --tolerance");
   SharedWork work(monitor);
   const CellShaper shaper(surface, packing, shape, cells.lattice, margin, work);
+  require_few_nodes(cells, shape, some);
   std::vector<std::vector<CellVoid>> made(some.size());
   std::vector<char> is_too_large(some.size(), 0);
   work.for_each(some.size(), 1, [&](std::size_t i) {
@@ -312,10 +338,7 @@ std::vector<CellVoid> shape_some(const SurfaceIndex& surface, const Packing& pac
       is_too_large[i] = 1;
     }
   });
-  if (std::ranges::find(is_too_large, 1) != is_too_large.end())
-    throw UsageError(fmt::format("a cell is too large for a fillet of {:g} mm and a tolerance of {:g} mm",
-                                 shape.fillet, shape.tolerance),
-                     "give a larger --fillet or --tolerance, or a smaller --max-radius");
+  if (std::ranges::find(is_too_large, 1) != is_too_large.end()) throw too_large(shape);
   std::vector<CellVoid> voids;
   for (std::vector<CellVoid>& of_cell : made) std::ranges::move(of_cell, std::back_inserter(voids));
   return voids;

@@ -454,6 +454,30 @@ TEST(ShapeCells, SaysWhereACellIsTooLarge) {
       test::contains(test::message_of<UsageError>([&] { shaped(model, packing, fine); }), "too large"));
 }
 
+TEST(ShapeCells, SaysSoBeforeAnyCellIsLookedAt) {
+  class NeverAsked : public Monitor {
+    void check_interrupted() override { ADD_FAILURE() << "a cell is being shaped"; }
+  } monitor;
+  const Mesh model = test::make_box({0, 0, 0}, {40, 20, 20});
+  const Packing packing = packing_of({ball({10, 10, 10}, 7), ball({30, 10, 10}, 7)});
+  const CellShape fine{.fillet = 0.05, .tolerance = 0.05};
+  const CellPlanes planes = planes_of(model, packing);
+  EXPECT_TRUE(test::contains(
+      test::message_of<UsageError>([&] { shape_cells(SurfaceIndex(model), packing, planes, fine, monitor); }),
+      "too large"));
+}
+
+TEST(ShapeCells, WhatKeepsTheWallIsNotFarFromWhatWasPlanned) {
+  // Bends round the model: vertices are moved to keep the wall.
+  const Mesh model = test::make_torus(30, 12, 60, 30);
+  const Packing packing = packing_of({ball({30, 0, 0}, 9)});
+  for (const double tolerance : {0.05, 0.1}) {
+    const CellShape shape{.fillet = 1.75, .tolerance = tolerance};
+    for (const CellVoid& piece : shaped(model, packing, shape).voids)
+      EXPECT_LE(piece.deviation, 1.2 * tolerance);
+  }
+}
+
 // Asked to stop at some question, or at none.
 class StoppedAt : public Monitor {
  public:
