@@ -73,7 +73,10 @@ class Decimation {
     work.check_interrupted();
     index();
     candidates_.clear();
-    for (const Triangle& t : triangles_) {
+    constexpr std::size_t kBetween = std::size_t{1} << 16;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      if (i % kBetween == 0) work.check_interrupted();
+      const Triangle& t = triangles_[i];
       for (std::size_t e = 0; e < 3; ++e) {
         const std::uint32_t a = t[e], b = t[(e + 1) % 3];
         if (a > b) continue;  // each edge once: the other triangle has it the other way round
@@ -87,12 +90,13 @@ class Decimation {
         if (onto_b <= most) candidates_.push_back({static_cast<float>((onto_b + bias) / both.area), a, b});
       }
     }
+    work.check_interrupted();
     std::sort(candidates_.begin(), candidates_.end());
+    work.check_interrupted();
     busy_.assign(points_.size(), 0);
     renamed_.resize(points_.size());
     for (std::uint32_t v = 0; v < renamed_.size(); ++v) renamed_[v] = v;
     std::size_t count = 0, looked_at = 0;
-    constexpr std::size_t kBetween = std::size_t{1} << 16;
     for (const Collapse& c : candidates_) {
       if (++looked_at % kBetween == 0) work.check_interrupted();
       if (busy_[c.gone] != 0 || busy_[c.kept] != 0 || !keeps_topology(c)) continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/disjoint_sets.h"
 #include "printing/cells/nearest_in_halfspaces.h"
 
 namespace aerate {
@@ -240,6 +241,24 @@ void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_vo
   }
 }
 
+// Void nodes that follow each other along x.
+struct Run {
+  std::size_t first, last;
+};
+
+std::vector<Run> runs_of(const NodeBox& box, const std::vector<std::uint8_t>& is_void) {
+  std::vector<Run> runs;
+  for (std::size_t row = 0; row < box.size(); row += box.step_y()) {
+    for (std::size_t node = row; node < row + box.step_y(); ++node) {
+      if (is_void[node] == 0) continue;
+      const std::size_t first = node;
+      while (node + 1 < row + box.step_y() && is_void[node + 1] != 0) ++node;
+      runs.push_back({first, node});
+    }
+  }
+  return runs;
+}
+
 }  // namespace
 
 OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own, SharedWork& work) {
@@ -257,28 +276,35 @@ OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sph
 
 std::vector<NodePiece> find_pieces(const NodeBox& box, const std::vector<std::uint8_t>& is_void,
                                    std::vector<std::int32_t>& labels) {
+  // By runs of nodes along x, joined with those they touch in the rows before.
+  const std::vector<Run> runs = runs_of(box, is_void);
+  DisjointSets sets(runs.size());
   labels.assign(box.size(), -1);
-  std::vector<NodePiece> pieces;
-  std::vector<std::size_t> pending;
-  const std::array<std::size_t, 3> steps{1, box.step_y(), box.step_z()};
-  for (std::size_t start = 0; start < box.size(); ++start) {
-    if (is_void[start] == 0 || labels[start] >= 0) continue;
-    NodePiece piece{static_cast<std::int32_t>(pieces.size()), 0};
-    labels[start] = piece.label;
-    pending.push_back(start);
-    while (!pending.empty()) {
-      const std::size_t node = pending.back();
-      pending.pop_back();
-      ++piece.size;
-      for (const std::size_t step : steps) {
-        for (const std::size_t next : {node - step, node + step}) {
-          if (is_void[next] == 0 || labels[next] >= 0) continue;
-          labels[next] = piece.label;
-          pending.push_back(next);
-        }
+  for (std::uint32_t n = 0; n < runs.size(); ++n) {
+    const auto [first, last] = runs[n];
+    for (const std::size_t back : {box.step_y(), box.step_z()}) {
+      std::int32_t before = -1;
+      for (std::size_t node = first; node <= last; ++node) {
+        const std::int32_t other = labels[node - back];
+        if (other >= 0 && other != before) sets.join(n, static_cast<std::uint32_t>(other));
+        before = other;
       }
     }
-    pieces.push_back(piece);
+    std::fill(labels.begin() + static_cast<std::ptrdiff_t>(first),
+              labels.begin() + static_cast<std::ptrdiff_t>(last) + 1, static_cast<std::int32_t>(n));
+  }
+  std::vector<NodePiece> pieces;
+  std::vector<std::int32_t> piece_of(runs.size(), -1);
+  for (std::uint32_t n = 0; n < runs.size(); ++n) {
+    const auto [first, last] = runs[n];
+    std::int32_t& label = piece_of[sets.root(n)];
+    if (label < 0) {
+      label = static_cast<std::int32_t>(pieces.size());
+      pieces.push_back({label, 0});
+    }
+    pieces[static_cast<std::size_t>(label)].size += last - first + 1;
+    std::fill(labels.begin() + static_cast<std::ptrdiff_t>(first),
+              labels.begin() + static_cast<std::ptrdiff_t>(last) + 1, label);
   }
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const NodePiece& a, const NodePiece& b) { return a.size > b.size; });

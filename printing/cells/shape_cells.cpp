@@ -29,7 +29,7 @@ constexpr double kLeastVolume = 1;
 
 // Of the tolerance, for taking out triangles; the rest is for the wall, which triangles that bend round the model
 // would not keep. And what decimation is told at first.
-constexpr double kShareForDecimation = 0.35, kFirstShare = 0.25;
+constexpr double kShareForDecimation = 0.45, kFirstShare = 0.33;
 
 // Of the tolerance, with what vertices were moved by to keep the wall; of what decimation was told, where it is more.
 constexpr double kMostDeviation = 1.2, kLessForWall = 0.6;
@@ -67,6 +67,7 @@ class CellShaper {
     for (int rounds = 0; nodes.box.size() > 0 && rounds < kMostPieces; ++rounds) {
       const OpenedCell opened = open_cell(region, nodes, packing_.spheres[cell], work_);
       const std::vector<NodePiece> pieces = find_pieces(nodes.box, opened.is_void, labels);
+      work_.check_interrupted();
       const auto is_worth_it = [&](const NodePiece& piece) {
         return volume_of_nodes(piece.size) >= kLeastVolume &&
                takes_least_ball(region, nodes, labels, piece.label, packing_.spheres[cell]);
@@ -76,6 +77,7 @@ class CellShaper {
       const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
       const PieceSurface surface =
           surface_of_piece(nodes.box, opened, nodes, labels, piece->label, placer, work_);
+      work_.check_interrupted();
       if (const auto loose = middle_of_loose_solid(surface)) {
         keep_attached(nodes, *loose);
         continue;
@@ -129,6 +131,7 @@ class CellShaper {
     Decimated fewer;
     std::vector<PlacedVertex> vertices;
     for (int i = 1; i <= kMostTries; ++i) {
+      work_.check_interrupted();
       fewer = decimate(positions_of(dense), dense.triangles, i < kMostTries ? allowed : 0, work_);
       result.deviation = deviation(dense, fewer);
       if (i < kMostTries && result.deviation > kShareForDecimation * shape_.tolerance) {
@@ -163,6 +166,7 @@ class CellShaper {
       is_left[v] = 1;
     }
     const kernels::HostTriangleBvh bvh(positions, fewer.triangles);
+    work_.check_interrupted();
     const NearFacets facets(bvh.view());
     std::vector<double> squared(dense.vertices.size(), 0);
     constexpr std::size_t kGrain = 512;
