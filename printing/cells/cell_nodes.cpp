@@ -30,7 +30,9 @@ class Filler {
 
   void fill(SharedWork& work) {
     const NodeBox& box = nodes_.box;
-    const auto blocks = [](std::int32_t count) { return static_cast<std::size_t>((count - 1) / kBlock + 1); };
+    const auto blocks = [](std::int32_t count) {
+      return (static_cast<std::size_t>(count) + kBlock - 1) / kBlock;
+    };
     const std::size_t x = blocks(box.count_x), y = blocks(box.count_y), z = blocks(box.count_z);
     const auto at = [](std::size_t block) { return static_cast<std::int32_t>(block) * kBlock; };
     constexpr std::size_t kGrain = 4;
