@@ -28,13 +28,17 @@ class Filler {
  public:
   Filler(const CellRegion& region, CellNodes& nodes) : region_(region), nodes_(nodes) {}
 
-  void fill() {
+  void fill(SharedWork& work) {
     const NodeBox& box = nodes_.box;
-    for (std::int32_t k = 0; k < box.count_z; k += kBlock) {
-      for (std::int32_t j = 0; j < box.count_y; j += kBlock) {
-        for (std::int32_t i = 0; i < box.count_x; i += kBlock) fill(i, j, k, kBlock, {});
-      }
-    }
+    const auto blocks = [](std::int32_t count) {
+      return (static_cast<std::size_t>(count) + kBlock - 1) / kBlock;
+    };
+    const std::size_t x = blocks(box.count_x), y = blocks(box.count_y), z = blocks(box.count_z);
+    const auto at = [](std::size_t block) { return static_cast<std::int32_t>(block) * kBlock; };
+    constexpr std::size_t kGrain = 4;
+    work.for_each(x * y * z, kGrain, [&](std::size_t block) {
+      fill(at(block % x), at(block / x % y), at(block / (x * y)), kBlock, {});
+    });
   }
 
  private:
@@ -99,7 +103,7 @@ class Filler {
 
 // Of the points round which a ball fits: by blocks, so at least this.
 std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within, double ball_radius,
-                                  double side) {
+                                  double side, SharedWork& work) {
   const double reach = side / 2 * kRootOf3;
   const Vec3d half{side / 2, side / 2, side / 2};
   Box3d box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
@@ -111,10 +115,12 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
   constexpr double kMostBlocks = 4e6;
   if (extent.x * extent.y * extent.z > kMostBlocks * side * side * side)
     throw std::length_error("a cell has too many blocks of lattice nodes");
-  for (std::int32_t k = 0; k < blocks(extent.z); ++k) {
+  std::vector<Box3d> box_of_layer(static_cast<std::size_t>(blocks(extent.z)), box);
+  work.for_each(box_of_layer.size(), 1, [&](std::size_t k) {
+    Box3d& found = box_of_layer[k];
     for (std::int32_t j = 0; j < blocks(extent.y); ++j) {
       for (std::int32_t i = 0; i < blocks(extent.x); ++i) {
-        const Vec3d middle = within.lower + half + Vec3d{side * i, side * j, side * k};
+        const Vec3d middle = within.lower + half + Vec3d{side * i, side * j, side * static_cast<double>(k)};
         if (region.behind_planes(middle) + reach < ball_radius) continue;
         const double needed = region.wall() + ball_radius;
         const SurfaceNearby near = region.surface_near(middle, needed + reach, kNone);
@@ -122,10 +128,12 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
         if (near.distance >= reach) {
           if (!region.is_inside(middle) || near.distance + reach < needed) continue;
         }
-        box = {min_of(box.lower, middle - half), max_of(box.upper, middle + half)};
+        found = {min_of(found.lower, middle - half), max_of(found.upper, middle + half)};
       }
     }
-  }
+  });
+  for (const Box3d& found : box_of_layer)
+    box = {min_of(box.lower, found.lower), max_of(box.upper, found.upper)};
   if (!(box.lower.x < box.upper.x)) return std::nullopt;
   return box;
 }
@@ -133,15 +141,14 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
 }  // namespace
 
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
-                        const NodeLattice& lattice) {
+                        const NodeLattice& lattice, SharedWork& work) {
   constexpr double kBlocksPerCell = 6;
-  constexpr std::size_t kMostNodes = std::size_t{1} << 26;
   const double spacing = lattice.spacing;
   CellNodes nodes;
   nodes.ball_radius = ball_radius;
   nodes.deepest = ball_radius + kRootOf3 * spacing;
   nodes.box.lattice = lattice;
-  const auto balls = box_of_balls(region, within, ball_radius, kBlocksPerCell * spacing);
+  const auto balls = box_of_balls(region, within, ball_radius, kBlocksPerCell * spacing, work);
   if (!balls) return nodes;
   const double margin = nodes.deepest + 2 * spacing;
   const auto first = [&](double coordinate, double origin) {
@@ -157,11 +164,11 @@ CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ba
   box.count_x = count(balls->upper.x, lattice.origin.x, box.x);
   box.count_y = count(balls->upper.y, lattice.origin.y, box.y);
   box.count_z = count(balls->upper.z, lattice.origin.z, box.z);
-  if (box.size() > kMostNodes) throw std::length_error("a cell has more than 2^26 lattice nodes");
+  if (box.size() > kMostNodesOfCell) throw std::length_error("a cell has more than 2^26 lattice nodes");
   nodes.depth.assign(box.size(), -1.F);
   nodes.surface_depth.assign(box.size(), kFar);
   nodes.facet.assign(box.size(), kNone);
-  Filler(region, nodes).fill();
+  Filler(region, nodes).fill(work);
   return nodes;
 }
 

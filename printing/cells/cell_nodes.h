@@ -7,6 +7,7 @@
 
 #include "core/cells.h"
 #include "printing/cells/cell_region.h"
+#include "printing/cells/shared_work.h"
 
 namespace aerate {
 
@@ -56,11 +57,14 @@ struct CellNodes {
   }
 };
 
+// Nodes that one cell may have: about 2 GB.
+inline constexpr std::size_t kMostNodesOfCell = std::size_t{1} << 26;
+
 // Looks at the nodes of a lattice in `within`, which holds the cell. Blocks of nodes are told from their middles
 // where the region's depth allows it, so that the time goes with the region's surface. The box that is returned
 // has two nodes without a ball on each side, and room for balls. Throws std::length_error if there are more than
-// 2^26 of them.
+// kMostNodesOfCell.
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
-                        const NodeLattice& lattice);
+                        const NodeLattice& lattice, SharedWork& work);
 
 }  // namespace aerate

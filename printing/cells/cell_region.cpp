@@ -8,18 +8,17 @@
 namespace aerate {
 
 SurfaceNearby CellRegion::surface_near(Vec3d p, double limit, std::uint32_t hint) const {
-  const kernels::TriangleBvhView& bvh = surface_.bvh();
   kernels::NearestFacet best{limit * limit, kNone};
   if (hint != kNone) {
-    const double squared = kernels::distance_squared_to_facet(p, bvh.facets[hint]);
+    const double squared = kernels::distance_squared_to_facet(p, near_.facet(hint));
     if (squared < best.distance_squared) best = {squared, hint};
   }
-  best = bvh.nearer_than(p, best);
+  best = near_.nearer_than(p, best);
   return {std::sqrt(best.distance_squared), best.facet};
 }
 
 Vec3d CellRegion::nearest_on(std::uint32_t facet, Vec3d p) const {
-  return kernels::nearest_point_on_facet(p, surface_.bvh().facets[facet]).point;
+  return kernels::nearest_point_on_facet(p, near_.facet(facet)).point;
 }
 
 }  // namespace aerate

@@ -7,6 +7,7 @@
 #include "kernels/cell_planes.h"
 #include "kernels/constants.h"
 #include "kernels/vec.h"
+#include "printing/cells/near_facets.h"
 
 namespace aerate {
 
@@ -21,8 +22,10 @@ struct SurfaceNearby {
 // about a point as large as the point is deep lies wholly within. Exact, fp64.
 class CellRegion {
  public:
-  CellRegion(std::span<const CellPlane> planes, const SurfaceIndex& surface, double wall)
-      : planes_(planes), surface_(surface), wall_(wall) {}
+  // `near` is of the surface's facets.
+  CellRegion(std::span<const CellPlane> planes, const SurfaceIndex& surface, const NearFacets& near,
+             double wall)
+      : planes_(planes), surface_(surface), near_(near), wall_(wall) {}
 
   std::span<const CellPlane> planes() const { return planes_; }
   double wall() const { return wall_; }
@@ -40,11 +43,12 @@ class CellRegion {
   SurfaceNearby surface_near(Vec3d p, double limit, std::uint32_t hint) const;
   Vec3d nearest_on(std::uint32_t facet, Vec3d p) const;
   bool is_inside(Vec3d p) const { return surface_.winding().winding_number(p) == 1; }
-  const SurfaceIndex& surface() const { return surface_; }
+  const NearFacets& near_facets() const { return near_; }
 
  private:
   std::span<const CellPlane> planes_;
   const SurfaceIndex& surface_;
+  const NearFacets& near_;
   double wall_;
 };
 

@@ -69,10 +69,14 @@ class Decimation {
   }
 
   // One pass: how many edges were collapsed.
-  std::size_t pass(double most_squared) {
+  std::size_t pass(double most_squared, SharedWork& work) {
+    work.check_interrupted();
     index();
     candidates_.clear();
-    for (const Triangle& t : triangles_) {
+    constexpr std::size_t kBetween = std::size_t{1} << 16;
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      if (i % kBetween == 0) work.check_interrupted();
+      const Triangle& t = triangles_[i];
       for (std::size_t e = 0; e < 3; ++e) {
         const std::uint32_t a = t[e], b = t[(e + 1) % 3];
         if (a > b) continue;  // each edge once: the other triangle has it the other way round
@@ -86,12 +90,15 @@ class Decimation {
         if (onto_b <= most) candidates_.push_back({static_cast<float>((onto_b + bias) / both.area), a, b});
       }
     }
+    work.check_interrupted();
     std::sort(candidates_.begin(), candidates_.end());
+    work.check_interrupted();
     busy_.assign(points_.size(), 0);
     renamed_.resize(points_.size());
     for (std::uint32_t v = 0; v < renamed_.size(); ++v) renamed_[v] = v;
-    std::size_t count = 0;
+    std::size_t count = 0, looked_at = 0;
     for (const Collapse& c : candidates_) {
+      if (++looked_at % kBetween == 0) work.check_interrupted();
       if (busy_[c.gone] != 0 || busy_[c.kept] != 0 || !keeps_topology(c)) continue;
       const std::optional<double> deviation = deviation_after(c);
       if (!deviation) continue;
@@ -234,14 +241,16 @@ class Decimation {
 
 }  // namespace
 
-Decimated decimate(const std::vector<Vec3d>& positions, std::vector<Triangle> triangles, double tolerance) {
+Decimated decimate(const std::vector<Vec3d>& positions, std::vector<Triangle> triangles, double tolerance,
+                   SharedWork& work) {
   // Mean squared distances, of what may be the most.
   constexpr double kSteps[] = {1.0 / 1024, 1.0 / 64, 1.0 / 16, 0.25};
   constexpr double kWorthIt = 0.02;  // of the triangles
   Decimation decimation(positions, std::move(triangles), tolerance);
   for (const double step : kSteps) {
     const double most = step * tolerance * tolerance;
-    while (static_cast<double>(decimation.pass(most)) * 2 > kWorthIt * static_cast<double>(decimation.size()))
+    while (static_cast<double>(decimation.pass(most, work)) * 2 >
+           kWorthIt * static_cast<double>(decimation.size()))
       ;
   }
   return std::move(decimation).result();

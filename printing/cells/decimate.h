@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/mesh.h"
+#include "printing/cells/shared_work.h"
 
 namespace aerate {
 
@@ -21,6 +22,7 @@ struct Decimated {
 // condition: T. Dey et al., "Topology preserving edge contraction", 1999) and the shape of triangles are kept:
 // none is turned by more than some 60 degrees or becomes a needle that it was not. The result depends on the
 // arguments alone. O(n log n).
-Decimated decimate(const std::vector<Vec3d>& positions, std::vector<Triangle> triangles, double tolerance);
+Decimated decimate(const std::vector<Vec3d>& positions, std::vector<Triangle> triangles, double tolerance,
+                   SharedWork& work);
 
 }  // namespace aerate

@@ -4,6 +4,7 @@
 
 #include "core/mesh.h"
 #include "printing/cells/cell_region.h"
+#include "printing/cells/shared_work.h"
 #include "printing/cells/surface_placer.h"
 
 namespace aerate {
@@ -13,6 +14,6 @@ namespace aerate {
 // do not. Triangles are those that a file will have, of positions rounded to fp32, and distances exact.
 // Returns how far a vertex was moved at most, mm.
 double keep_wall(const CellRegion& region, std::vector<PlacedVertex>& vertices,
-                 const std::vector<Triangle>& triangles);
+                 const std::vector<Triangle>& triangles, SharedWork& work);
 
 }  // namespace aerate

@@ -14,17 +14,22 @@ class Netter {
          const std::vector<std::int32_t>& labels, std::int32_t piece, const SurfacePlacer& placer)
       : box_(box), opened_(opened), nodes_(nodes), labels_(labels), piece_(piece), placer_(placer) {}
 
-  PieceSurface make() {
+  PieceSurface make(SharedWork& work) {
     vertex_of_cube_.assign(box_.size(), kNone);
     std::int64_t cells = 0;
     for (std::int32_t k = 0; k + 1 < box_.count_z; ++k) {
+      work.check_interrupted();
       for (std::int32_t j = 0; j + 1 < box_.count_y; ++j) {
         for (std::int32_t i = 0; i + 1 < box_.count_x; ++i) cells += look_at(i, j, k);
       }
     }
+    surface_.vertices.resize(passed_.size());
+    constexpr std::size_t kGrain = 256;
+    work.for_each(passed_.size(), kGrain, [&](std::size_t v) { surface_.vertices[v] = vertex(passed_[v]); });
     // The surface of a solid has twice the solid's Euler characteristic.
     surface_.euler = 2 * cells;
     for (std::int32_t k = 1; k + 1 < box_.count_z; ++k) {
+      work.check_interrupted();
       for (std::int32_t j = 1; j + 1 < box_.count_y; ++j) {
         for (std::int32_t i = 1; i + 1 < box_.count_x; ++i) join_round(box_.index(i, j, k));
       }
@@ -33,10 +38,16 @@ class Netter {
   }
 
  private:
+  // A cube of nodes that the surface passes, and its corners in the void.
+  struct Cube {
+    std::int32_t i, j, k;
+    unsigned set;
+  };
+
   bool is_in(std::size_t node) const { return labels_[node] == piece_; }
 
-  // Nodes - edges + faces - cubes of the void, of those that begin at the cube's first corner. Places the cube's
-  // vertex if the surface passes.
+  // Nodes - edges + faces - cubes of the void, of those that begin at the cube's first corner. Notes the cube
+  // if the surface passes.
   std::int64_t look_at(std::int32_t i, std::int32_t j, std::int32_t k) {
     const std::array<std::size_t, 8> corners = cube_at(box_, i, j, k);
     unsigned set = 0;
@@ -44,8 +55,8 @@ class Netter {
     if (set == 0) return 0;
     const auto has = [set](unsigned mask) { return (set & mask) == mask ? 1 : 0; };
     if (set != 255) {
-      vertex_of_cube_[corners[0]] = static_cast<std::uint32_t>(surface_.vertices.size());
-      surface_.vertices.push_back(vertex(i, j, k, corners, set));
+      vertex_of_cube_[corners[0]] = static_cast<std::uint32_t>(passed_.size());
+      passed_.push_back({i, j, k, set});
     }
     return has(1) - has(3) - has(5) - has(17) + has(15) + has(51) + has(85) - has(255);
   }
@@ -57,8 +68,9 @@ class Netter {
     return std::clamp(static_cast<double>(opened_.cover[node]), -2 * spacing, spacing);
   }
 
-  PlacedVertex vertex(std::int32_t i, std::int32_t j, std::int32_t k,
-                      const std::array<std::size_t, 8>& corners, unsigned set) const {
+  PlacedVertex vertex(const Cube& cube) const {
+    const auto [i, j, k, set] = cube;
+    const std::array<std::size_t, 8> corners = cube_at(box_, i, j, k);
     Vec3d sum{0, 0, 0};
     int count = 0;
     std::size_t shallowest = kNoNode;
@@ -126,6 +138,7 @@ class Netter {
   std::int32_t piece_;
   const SurfacePlacer& placer_;
   std::vector<std::uint32_t> vertex_of_cube_;
+  std::vector<Cube> passed_;
   PieceSurface surface_;
 };
 
@@ -133,8 +146,8 @@ class Netter {
 
 PieceSurface surface_of_piece(const NodeBox& box, const OpenedCell& opened, const CellNodes& nodes,
                               const std::vector<std::int32_t>& labels, std::int32_t piece,
-                              const SurfacePlacer& placer) {
-  return Netter(box, opened, nodes, labels, piece, placer).make();
+                              const SurfacePlacer& placer, SharedWork& work) {
+  return Netter(box, opened, nodes, labels, piece, placer).make(work);
 }
 
 std::vector<NodeRun> runs_of_piece(const NodeBox& box, const std::vector<std::int32_t>& labels,

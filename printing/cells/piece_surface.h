@@ -20,7 +20,7 @@ struct PieceSurface {
 // placed on the opened region's surface. Since the piece is well-composed the result is a closed 2-manifold.
 PieceSurface surface_of_piece(const NodeBox& box, const OpenedCell& opened, const CellNodes& nodes,
                               const std::vector<std::int32_t>& labels, std::int32_t piece,
-                              const SurfacePlacer& placer);
+                              const SurfacePlacer& placer, SharedWork& work);
 
 // The nodes of a piece as runs.
 std::vector<NodeRun> runs_of_piece(const NodeBox& box, const std::vector<std::int32_t>& labels,

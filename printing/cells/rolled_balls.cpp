@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "core/disjoint_sets.h"
 #include "printing/cells/nearest_in_halfspaces.h"
 
 namespace aerate {
@@ -33,20 +35,19 @@ class Roller {
   Roller(const CellRegion& region, const CellNodes& nodes, OpenedCell& opened)
       : region_(region), nodes_(nodes), opened_(opened) {}
 
-  void roll(const Sphere& own) {
+  void roll(const Sphere& own, SharedWork& work) {
     const NodeBox& box = nodes_.box;
-    for (std::int32_t k = 0; k < box.count_z; ++k) {
-      for (std::int32_t j = 0; j < box.count_y; ++j) {
-        for (std::int32_t i = 0; i < box.count_x; ++i) {
-          const std::size_t node = box.index(i, j, k);
-          if (!nodes_.is_outermost(node) || is_surrounded(node)) continue;
-          const Vec3d at = box.at(i, j, k);
-          add({at, static_cast<double>(nodes_.depth[node]), nodes_.facet[node], is_near_surface(node)});
-          add_in_edge(node, at);
-        }
-      }
-    }
-    if (has_room_for(own)) add({own.centre, own.radius, kNone, true});
+    const auto layers = static_cast<std::size_t>(box.count_z);
+    std::vector<std::vector<RolledBall>> of_layer(layers);
+    work.for_each(layers, 1, [&](std::size_t k) { of_layer[k] = balls_of(static_cast<std::int32_t>(k)); });
+    for (const std::vector<RolledBall>& balls : of_layer)
+      opened_.balls.insert(opened_.balls.end(), balls.begin(), balls.end());
+    if (has_room_for(own)) opened_.balls.push_back({own.centre, own.radius, kNone, true});
+    constexpr std::size_t kGrain = 8;
+    work.for_each_part(layers, kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::uint32_t ball = 0; ball < opened_.balls.size(); ++ball)
+        cover(ball, static_cast<std::int32_t>(first), static_cast<std::int32_t>(last) - 1);
+    });
   }
 
  private:
@@ -81,8 +82,24 @@ class Roller {
     return true;
   }
 
+  std::vector<RolledBall> balls_of(std::int32_t k) const {
+    const NodeBox& box = nodes_.box;
+    std::vector<RolledBall> balls;
+    for (std::int32_t j = 0; j < box.count_y; ++j) {
+      for (std::int32_t i = 0; i < box.count_x; ++i) {
+        const std::size_t node = box.index(i, j, k);
+        if (!nodes_.is_outermost(node) || is_surrounded(node)) continue;
+        const Vec3d at = box.at(i, j, k);
+        balls.push_back(
+            {at, static_cast<double>(nodes_.depth[node]), nodes_.facet[node], is_near_surface(node)});
+        if (const auto ball = ball_in_edge(node, at)) balls.push_back(*ball);
+      }
+    }
+    return balls;
+  }
+
   // Where two or more of what bounds the region are near, a ball in the edge or corner between them.
-  void add_in_edge(std::size_t node, Vec3d at) {
+  std::optional<RolledBall> ball_in_edge(std::size_t node, Vec3d at) const {
     constexpr double kBeyond = 1.5, kFarthest = 2.5, kLeastRadius = 0.9;
     const double spacing = nodes_.box.lattice.spacing, radius = nodes_.ball_radius;
     Halfspaces bounds;
@@ -107,28 +124,32 @@ class Roller {
         ++near;
       }
     }
-    if (near < 2) return;
+    if (near < 2) return std::nullopt;
     const Vec3d edge = bounds.nearest_to(at + outward * (kBeyond * spacing));
-    if (length(edge - at) > kFarthest * spacing) return;
+    if (length(edge - at) > kFarthest * spacing) return std::nullopt;
     double depth = region_.behind_planes(edge);
     const bool asks_surface = below < nodes_.deepest + kFarthest * spacing;
     if (asks_surface) {
       const SurfaceNearby surface = region_.surface_near(edge, region_.wall() + 2 * radius, facet);
       depth = std::min(depth, surface.distance - region_.wall());
     }
-    if (depth >= kLeastRadius * radius) add({edge, depth, facet, asks_surface});
+    if (depth < kLeastRadius * radius) return std::nullopt;
+    return RolledBall{edge, depth, facet, asks_surface};
   }
 
-  void add(const RolledBall& ball) {
+  // Nodes of some layers.
+  void cover(std::uint32_t number, std::int32_t first_layer, std::int32_t last_layer) {
     const NodeBox& box = nodes_.box;
+    const RolledBall& ball = opened_.balls[number];
     const double spacing = box.lattice.spacing;
-    const auto number = static_cast<std::uint32_t>(opened_.balls.size());
-    opened_.balls.push_back(ball);
     // Nodes just outside tell where the surface passes.
     const double reach = ball.radius + 1.2 * spacing;
     const Vec3d origin = box.at(0, 0, 0);
+    if (ball.centre.z + reach < origin.z + spacing * first_layer ||
+        ball.centre.z - reach > origin.z + spacing * last_layer)
+      return;
     const NodeRange layers(ball.centre.z, reach, origin.z, spacing, box.count_z);
-    for (std::int32_t k = layers.first; k <= layers.last; ++k) {
+    for (std::int32_t k = std::max(layers.first, first_layer); k <= std::min(layers.last, last_layer); ++k) {
       const double dz = square(origin.z + spacing * k - ball.centre.z);
       const double reach_y = std::sqrt(std::max(0.0, reach * reach - dz));
       const NodeRange rows(ball.centre.y, reach_y, origin.y, spacing, box.count_y);
@@ -140,8 +161,11 @@ class Roller {
         for (std::int32_t i = row.first; i <= row.last; ++i) {
           const std::size_t node = first + static_cast<std::size_t>(i);
           if (nodes_.has_ball(node)) continue;
-          const auto cover = static_cast<float>(
-              ball.radius - std::sqrt(dyz + square(origin.x + spacing * i - ball.centre.x)));
+          const double squared = dyz + square(origin.x + spacing * i - ball.centre.x);
+          // Nearer to the middle than the node would have to be for more.
+          const double least = ball.radius - static_cast<double>(opened_.cover[node]);
+          if (least <= 0 || squared >= least * least) continue;
+          const auto cover = static_cast<float>(ball.radius - std::sqrt(squared));
           if (cover <= opened_.cover[node]) continue;
           opened_.cover[node] = cover;
           opened_.ball[node] = number;
@@ -192,12 +216,13 @@ std::array<bool, 256> make_well_composed() {
 
 // Takes nodes out of the void until every cube is well-composed: those without a ball of their own, or, where nodes
 // with one meet diagonally since the nodes between them were taken out, these.
-void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_void) {
+void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_void, SharedWork& work) {
   static const std::array<bool, 256> kWellComposed = make_well_composed();
   const NodeBox& box = nodes.box;
   for (bool changes = true; changes;) {
     changes = false;
     for (std::int32_t k = 0; k + 1 < box.count_z; ++k) {
+      work.check_interrupted();
       for (std::int32_t j = 0; j + 1 < box.count_y; ++j) {
         for (std::int32_t i = 0; i + 1 < box.count_x; ++i) {
           const std::array<std::size_t, 8> corners = cube_at(box, i, j, k);
@@ -217,45 +242,70 @@ void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_vo
   }
 }
 
+// Void nodes that follow each other along x.
+struct Run {
+  std::size_t first, last;
+};
+
+std::vector<Run> runs_of(const NodeBox& box, const std::vector<std::uint8_t>& is_void) {
+  std::vector<Run> runs;
+  for (std::size_t row = 0; row < box.size(); row += box.step_y()) {
+    for (std::size_t node = row; node < row + box.step_y(); ++node) {
+      if (is_void[node] == 0) continue;
+      const std::size_t first = node;
+      while (node + 1 < row + box.step_y() && is_void[node + 1] != 0) ++node;
+      runs.push_back({first, node});
+    }
+  }
+  return runs;
+}
+
 }  // namespace
 
-OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own) {
+OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own, SharedWork& work) {
   OpenedCell opened;
   opened.cover.assign(nodes.box.size(), kUncovered);
   opened.ball.assign(nodes.box.size(), kNone);
-  Roller(region, nodes, opened).roll(own);
+  Roller(region, nodes, opened).roll(own, work);
   const auto least = kLeastCover * static_cast<float>(nodes.box.lattice.spacing);
   opened.is_void.resize(nodes.box.size());
   for (std::size_t node = 0; node < nodes.box.size(); ++node)
     opened.is_void[node] = nodes.has_ball(node) || opened.cover[node] > least ? 1 : 0;
-  make_well_composed(nodes, opened.is_void);
+  make_well_composed(nodes, opened.is_void, work);
   return opened;
 }
 
 std::vector<NodePiece> find_pieces(const NodeBox& box, const std::vector<std::uint8_t>& is_void,
                                    std::vector<std::int32_t>& labels) {
+  // By runs of nodes along x, joined with those they touch in the rows before.
+  const std::vector<Run> runs = runs_of(box, is_void);
+  DisjointSets sets(runs.size());
   labels.assign(box.size(), -1);
-  std::vector<NodePiece> pieces;
-  std::vector<std::size_t> pending;
-  const std::array<std::size_t, 3> steps{1, box.step_y(), box.step_z()};
-  for (std::size_t start = 0; start < box.size(); ++start) {
-    if (is_void[start] == 0 || labels[start] >= 0) continue;
-    NodePiece piece{static_cast<std::int32_t>(pieces.size()), 0};
-    labels[start] = piece.label;
-    pending.push_back(start);
-    while (!pending.empty()) {
-      const std::size_t node = pending.back();
-      pending.pop_back();
-      ++piece.size;
-      for (const std::size_t step : steps) {
-        for (const std::size_t next : {node - step, node + step}) {
-          if (is_void[next] == 0 || labels[next] >= 0) continue;
-          labels[next] = piece.label;
-          pending.push_back(next);
-        }
+  for (std::uint32_t n = 0; n < runs.size(); ++n) {
+    const auto [first, last] = runs[n];
+    for (const std::size_t back : {box.step_y(), box.step_z()}) {
+      std::int32_t before = -1;
+      for (std::size_t node = first; node <= last; ++node) {
+        const std::int32_t other = labels[node - back];
+        if (other >= 0 && other != before) sets.join(n, static_cast<std::uint32_t>(other));
+        before = other;
       }
     }
-    pieces.push_back(piece);
+    std::fill(labels.begin() + static_cast<std::ptrdiff_t>(first),
+              labels.begin() + static_cast<std::ptrdiff_t>(last) + 1, static_cast<std::int32_t>(n));
+  }
+  std::vector<NodePiece> pieces;
+  std::vector<std::int32_t> piece_of(runs.size(), -1);
+  for (std::uint32_t n = 0; n < runs.size(); ++n) {
+    const auto [first, last] = runs[n];
+    std::int32_t& label = piece_of[sets.root(n)];
+    if (label < 0) {
+      label = static_cast<std::int32_t>(pieces.size());
+      pieces.push_back({label, 0});
+    }
+    pieces[static_cast<std::size_t>(label)].size += last - first + 1;
+    std::fill(labels.begin() + static_cast<std::ptrdiff_t>(first),
+              labels.begin() + static_cast<std::ptrdiff_t>(last) + 1, label);
   }
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const NodePiece& a, const NodePiece& b) { return a.size > b.size; });

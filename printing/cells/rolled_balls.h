@@ -32,7 +32,7 @@ struct OpenedCell {
 // `own`: the sphere that the cell belongs to; it lies in the region. No cube of nodes has two of its void's
 // nodes, or two of the others, that only meet diagonally (the set is well-composed; L. Latecki, U. Eckhardt and
 // A. Rosenfeld, "Well-composed sets", 1995), so that the surface between them is a 2-manifold.
-OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own);
+OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sphere& own, SharedWork& work);
 
 // A set of void nodes that hang together, 6-connected.
 struct NodePiece {

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
 
@@ -22,6 +21,7 @@
 #include "printing/cells/piece_roof.h"
 #include "printing/cells/piece_surface.h"
 #include "printing/cells/rolled_balls.h"
+#include "printing/cells/shared_work.h"
 
 namespace aerate {
 namespace {
@@ -29,12 +29,12 @@ namespace {
 // Slicers drop smaller shells, mm3 (docs/processes.md).
 constexpr double kLeastVolume = 1;
 
-// Cells between two questions to the monitor.
-constexpr std::size_t kCellsPerPiece = 64;
-
 // Of the tolerance, for taking out triangles; the rest is for the wall, which triangles that bend round the model
 // would not keep. And what decimation is told at first.
-constexpr double kShareForDecimation = 0.35, kFirstShare = 0.25;
+constexpr double kShareForDecimation = 0.45, kFirstShare = 0.33;
+
+// Of the tolerance, with what vertices were moved by to keep the wall; of what decimation was told, where it is more.
+constexpr double kMostDeviation = 1.2, kLessForWall = 0.6;
 
 double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Triangle>& triangles) {
   if (vertices.empty()) return 0;
@@ -48,14 +48,20 @@ double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Tr
 class CellShaper {
  public:
   CellShaper(const SurfaceIndex& surface, const Packing& packing, const CellShape& shape,
-             const NodeLattice& lattice, double margin)
-      : surface_(surface), packing_(packing), shape_(shape), lattice_(lattice), margin_(margin) {}
+             const NodeLattice& lattice, double margin, SharedWork& work)
+      : surface_(surface),
+        near_(surface.bvh()),
+        packing_(packing),
+        shape_(shape),
+        lattice_(lattice),
+        margin_(margin),
+        work_(work) {}
 
   // `solid`: places about which nothing is taken out.
   std::vector<CellVoid> shape(std::uint32_t cell, std::span<const CellPlane> planes, const Box3d& box,
                               std::span<const Vec3d> solid) const {
-    const CellRegion region(planes, surface_, packing_.limits.wall);
-    CellNodes nodes = look_at_nodes(region, box, shape_.fillet, lattice_);
+    const CellRegion region(planes, surface_, near_, packing_.limits.wall);
+    CellNodes nodes = look_at_nodes(region, box, shape_.fillet, lattice_, work_);
     for (const Vec3d place : solid) keep_solid_about(nodes, place);
     std::vector<CellVoid> voids;
     constexpr int kMostPieces = 64;
@@ -97,8 +103,9 @@ class CellShaper {
   Opened open(const CellRegion& region, const CellNodes& nodes, std::uint32_t cell) const {
     const Sphere& own = packing_.spheres[cell];
     Opened opened;
-    opened.cell = open_cell(region, nodes, own);
+    opened.cell = open_cell(region, nodes, own, work_);
     const std::vector<NodePiece> pieces = find_pieces(nodes.box, opened.cell.is_void, opened.labels);
+    work_.check_interrupted();
     const auto piece = std::ranges::find_if(pieces, [&](const NodePiece& candidate) {
       return volume_of_nodes(candidate.size) >= kLeastVolume &&
              takes_least_ball(region, nodes, opened.labels, candidate.label, own);
@@ -113,7 +120,10 @@ class CellShaper {
 
   PieceSurface surface_of(const CellRegion& region, const CellNodes& nodes, const Opened& opened) const {
     const SurfacePlacer placer(region, shape_.fillet, lattice_.spacing, margin_);
-    return surface_of_piece(nodes.box, opened.cell, nodes, opened.labels, *opened.piece, placer);
+    PieceSurface surface =
+        surface_of_piece(nodes.box, opened.cell, nodes, opened.labels, *opened.piece, placer, work_);
+    work_.check_interrupted();
+    return surface;
   }
 
   // Appends the void that the piece leaves under a roof, if any, and takes it out of `nodes`, of which later pieces
@@ -124,7 +134,7 @@ class CellShaper {
     for (const double share : {1.0, 0.6, 0.0}) {
       const std::optional<Roofed> roofed = put_roof(planes, nodes, opened, cell, share);
       if (!roofed) continue;
-      const CellRegion region(roofed->planes, surface_, packing_.limits.wall);
+      const CellRegion region(roofed->planes, surface_, near_, packing_.limits.wall);
       const PieceSurface surface = surface_of(region, roofed->nodes, roofed->opened);
       if (const auto loose = middle_of_loose_solid(surface)) {
         keep_attached(nodes, *loose);
@@ -158,7 +168,7 @@ class CellShaper {
     Roofed roofed{{planes.begin(), planes.end()}, nodes, opened};
     std::vector<FlatCeiling> ceilings;
     for (int tries = 0; tries < kMostTries; ++tries) {
-      const CellRegion region(roofed.planes, surface_, packing_.limits.wall);
+      const CellRegion region(roofed.planes, surface_, near_, packing_.limits.wall);
       const std::vector<FlatCeiling> found =
           flat_ceilings(region, roofed.nodes, roofed.opened.labels, *roofed.opened.piece, roof, share);
       if (found.empty()) return roofed;
@@ -168,7 +178,8 @@ class CellShaper {
       roofed = {{planes.begin(), planes.end()}, nodes, {}};
       roofed.planes.insert(roofed.planes.end(), sides.begin(), sides.end());
       keep_behind(roofed.nodes, sides);
-      roofed.opened = open(CellRegion(roofed.planes, surface_, packing_.limits.wall), roofed.nodes, cell);
+      roofed.opened =
+          open(CellRegion(roofed.planes, surface_, near_, packing_.limits.wall), roofed.nodes, cell);
       if (!roofed.opened.piece) return std::nullopt;
     }
     return roofed;
@@ -231,16 +242,21 @@ class CellShaper {
     double allowed = kFirstShare * shape_.tolerance;
     constexpr int kMostTries = 5;
     Decimated fewer;
-    for (int i = 1; i <= kMostTries; ++i) {
-      fewer = decimate(positions_of(dense), dense.triangles, i < kMostTries ? allowed : 0);
-      result.deviation = deviation(dense, fewer);
-      if (result.deviation <= kShareForDecimation * shape_.tolerance) break;
-      allowed *= std::clamp(0.85 * kShareForDecimation * shape_.tolerance / result.deviation, 0.3, 0.85);
-    }
     std::vector<PlacedVertex> vertices;
-    vertices.reserve(fewer.vertices.size());
-    for (const std::uint32_t v : fewer.vertices) vertices.push_back(dense.vertices[v]);
-    result.deviation += keep_wall(region, vertices, fewer.triangles);
+    for (int i = 1; i <= kMostTries; ++i) {
+      work_.check_interrupted();
+      fewer = decimate(positions_of(dense), dense.triangles, i < kMostTries ? allowed : 0, work_);
+      result.deviation = deviation(dense, fewer);
+      if (i < kMostTries && result.deviation > kShareForDecimation * shape_.tolerance) {
+        allowed *= std::clamp(0.85 * kShareForDecimation * shape_.tolerance / result.deviation, 0.3, 0.85);
+        continue;
+      }
+      vertices.clear();
+      for (const std::uint32_t v : fewer.vertices) vertices.push_back(dense.vertices[v]);
+      result.deviation += keep_wall(region, vertices, fewer.triangles, work_);
+      if (result.deviation <= kMostDeviation * shape_.tolerance) break;
+      allowed *= kLessForWall;
+    }
     for (const PlacedVertex& vertex : vertices) result.surface.positions.push_back(to_float(vertex.at));
     result.surface.triangles = std::move(fewer.triangles);
     return result;
@@ -254,7 +270,7 @@ class CellShaper {
   }
 
   // How far the vertices that went are from what is left at most.
-  static double deviation(const PieceSurface& dense, const Decimated& fewer) {
+  double deviation(const PieceSurface& dense, const Decimated& fewer) const {
     std::vector<Vec3f> positions;
     positions.reserve(fewer.vertices.size());
     std::vector<char> is_left(dense.vertices.size(), 0);
@@ -263,18 +279,23 @@ class CellShaper {
       is_left[v] = 1;
     }
     const kernels::HostTriangleBvh bvh(positions, fewer.triangles);
-    double most = 0;
-    kernels::NearestFacet near{kInfinity, kNone};
-    for (std::size_t v = 0; v < dense.vertices.size(); ++v) {
-      if (is_left[v] != 0) continue;
-      // Vertices that follow each other are near each other.
-      const Vec3d at = dense.vertices[v].at;
-      if (near.facet != kNone)
-        near.distance_squared = kernels::distance_squared_to_facet(at, bvh.view().facets[near.facet]);
-      near = bvh.view().nearer_than(at, near);
-      most = std::max(most, near.distance_squared);
-    }
-    return std::sqrt(most);
+    work_.check_interrupted();
+    const NearFacets facets(bvh.view());
+    std::vector<double> squared(dense.vertices.size(), 0);
+    constexpr std::size_t kGrain = 512;
+    work_.for_each_part(squared.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      kernels::NearestFacet near{kInfinity, kNone};
+      for (std::size_t v = first; v < last; ++v) {
+        if (is_left[v] != 0) continue;
+        // Vertices that follow each other are near each other.
+        const Vec3d at = dense.vertices[v].at;
+        if (near.facet != kNone)
+          near.distance_squared = kernels::distance_squared_to_facet(at, facets.facet(near.facet));
+        near = facets.nearer_than(at, near);
+        squared[v] = near.distance_squared;
+      }
+    });
+    return std::sqrt(*std::ranges::max_element(squared));
   }
 
   // Where a void would surround a piece of solid, which would then be loose: the middle of that.
@@ -375,11 +396,31 @@ class CellShaper {
   }
 
   const SurfaceIndex& surface_;
+  NearFacets near_;
   const Packing& packing_;
   const CellShape& shape_;
   const NodeLattice& lattice_;
   double margin_;
+  SharedWork& work_;
 };
+
+UsageError too_large(const CellShape& shape) {
+  return UsageError(fmt::format("a cell is too large for a fillet of {:g} mm and a tolerance of {:g} mm",
+                                shape.fillet, shape.tolerance),
+                    "give a larger --fillet or --tolerance, or a smaller --max-radius");
+}
+
+// Before any cell is looked at, from their boxes.
+void require_few_nodes(const CellVoids& cells, const CellShape& shape, std::span<const std::uint32_t> some) {
+  const double spacing = cells.lattice.spacing;
+  for (const std::uint32_t cell : some) {
+    const Vec3d extent = cells.planes.boxes[cell].upper - cells.planes.boxes[cell].lower;
+    // A cell without room for the ball has an empty box, or a flat one.
+    if (!(std::min({extent.x, extent.y, extent.z}) > 0)) continue;
+    if (extent.x * extent.y * extent.z > static_cast<double>(kMostNodesOfCell) * spacing * spacing * spacing)
+      throw too_large(shape);
+  }
+}
 
 // The voids of some cells, in their order.
 std::vector<CellVoid> shape_some(const SurfaceIndex& surface, const Packing& packing, const CellVoids& cells,
@@ -398,27 +439,23 @@ std::vector<CellVoid> shape_some(const SurfaceIndex& surface, const Packing& pac
                     "coordinates in a mesh file are single precision",
                     largest, shape.tolerance),
         "move the model nearer to the origin, or raise --tolerance");
-  const CellShaper shaper(surface, packing, shape, cells.lattice, margin);
+  SharedWork work(monitor);
+  const CellShaper shaper(surface, packing, shape, cells.lattice, margin, work);
+  require_few_nodes(cells, shape, some);
   std::vector<std::vector<CellVoid>> made(some.size());
   std::vector<char> is_too_large(some.size(), 0);
-  for (std::size_t first = 0; first < some.size(); first += kCellsPerPiece) {
-    monitor.check_interrupted();
-    tbb::parallel_for(first, std::min(some.size(), first + kCellsPerPiece), [&](std::size_t i) {
-      const std::uint32_t cell = some[i];
-      std::vector<Vec3d> solid_here;
-      for (const CellPlace& place : solid)
-        if (place.cell == cell) solid_here.push_back(place.at);
-      try {
-        made[i] = shaper.shape(cell, cells.planes.of(cell), cells.planes.boxes[cell], solid_here);
-      } catch (const std::length_error&) {
-        is_too_large[i] = 1;
-      }
-    });
-  }
-  if (std::ranges::find(is_too_large, 1) != is_too_large.end())
-    throw UsageError(fmt::format("a cell is too large for a fillet of {:g} mm and a tolerance of {:g} mm",
-                                 shape.fillet, shape.tolerance),
-                     "give a larger --fillet or --tolerance, or a smaller --max-radius");
+  work.for_each(some.size(), 1, [&](std::size_t i) {
+    const std::uint32_t cell = some[i];
+    std::vector<Vec3d> solid_here;
+    for (const CellPlace& place : solid)
+      if (place.cell == cell) solid_here.push_back(place.at);
+    try {
+      made[i] = shaper.shape(cell, cells.planes.of(cell), cells.planes.boxes[cell], solid_here);
+    } catch (const std::length_error&) {
+      is_too_large[i] = 1;
+    }
+  });
+  if (std::ranges::find(is_too_large, 1) != is_too_large.end()) throw too_large(shape);
   std::vector<CellVoid> voids;
   for (std::vector<CellVoid>& of_cell : made) std::ranges::move(of_cell, std::back_inserter(voids));
   return voids;

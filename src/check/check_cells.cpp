@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <tbb/task_group.h>
 #include <utility>
 #include <vector>
 
@@ -59,9 +60,14 @@ class CellChecker {
       result.inside.first_moment = result.inside.first_moment - cell.inside.first_moment;
     }
     for (const CellVoid& piece : cells_.voids) result.deviation = std::max(result.deviation, piece.deviation);
+    // Looking for crossings takes one thread, most of the time.
+    SelfIntersections crossings;
+    tbb::task_group beside;
+    beside.run([&] { crossings = find_crossings(); });
     result.clearances.wall = least_wall();
     result.clearances.gap = least_gap();
-    require_no_crossing();
+    beside.wait();
+    require_none(crossings);
     return result;
   }
 
@@ -228,10 +234,12 @@ class CellChecker {
   }
 
   // Voids keep away from the model and from each other, so each can only run through itself.
-  void require_no_crossing() const {
+  SelfIntersections find_crossings() const {
     const std::size_t first = expected_.solid.outer_triangle_count();
-    const SelfIntersections crossings =
-        find_self_intersections(submesh(mesh_, std::span(mesh_.triangles).subspan(first)));
+    return find_self_intersections(submesh(mesh_, std::span(mesh_.triangles).subspan(first)));
+  }
+
+  static void require_none(const SelfIntersections& crossings) {
     if (crossings.pair_count == 0) return;
     const Vec3d place = crossings.places.front();
     fail_check(

@@ -6,26 +6,20 @@
 #include <cstddef>
 
 #include "kernels/constants.h"
+#include "kernels/nearest_point.h"
 
 namespace aerate {
 namespace {
 
-// The corners of a facet and its normal, not of unit length.
-struct Corners {
-  std::array<Vec3d, 3> at;
-  Vec3d normal;
+using Corners = FacetDistance::Corners;
 
-  explicit Corners(const kernels::Facet& facet)
-      : at{to_double(facet.a), to_double(facet.b), to_double(facet.c)},
-        normal(cross(at[1] - at[0], at[2] - at[0])) {}
-
-  // Does a point of the plane, or one that projects there, lie within all three sides?
-  bool holds(Vec3d p) const {
-    return dot(cross(normal, at[1] - at[0]), p - at[0]) >= 0 &&
-           dot(cross(normal, at[2] - at[1]), p - at[1]) >= 0 &&
-           dot(cross(normal, at[0] - at[2]), p - at[2]) >= 0;
-  }
-};
+// Does a point of the plane, or one that projects there, lie within all three sides?
+bool holds(const Corners& facet, Vec3d p) {
+  const std::array<Vec3d, 3>& at = facet.at;
+  return dot(cross(facet.normal, at[1] - at[0]), p - at[0]) >= 0 &&
+         dot(cross(facet.normal, at[2] - at[1]), p - at[1]) >= 0 &&
+         dot(cross(facet.normal, at[0] - at[2]), p - at[2]) >= 0;
+}
 
 double clamped(double x) {
   return x < 0 ? 0 : x > 1 ? 1 : x;
@@ -55,10 +49,10 @@ double distance_squared_across(const Corners& a, const Corners& b) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
     if ((height[i] > 0) != (height[next] > 0) && height[i] != height[next] &&
-        b.holds(a.at[i] + (a.at[next] - a.at[i]) * (height[i] / (height[i] - height[next]))))
+        holds(b, a.at[i] + (a.at[next] - a.at[i]) * (height[i] / (height[i] - height[next]))))
       return 0;
     const double squared = height[i] * height[i];
-    if (area_squared > 0 && squared < least * area_squared && b.holds(a.at[i]))
+    if (area_squared > 0 && squared < least * area_squared && holds(b, a.at[i]))
       least = squared / area_squared;
   }
   return least;
@@ -79,36 +73,35 @@ double gap_along(double a_lower, double a_upper, double b_lower, double b_upper)
 
 // Lies `b` on one side of the plane of `a`, farther from it than the root of `limit_squared`? What cannot be told
 // for rounding is not.
-bool is_beyond_plane(const kernels::Facet& a, const kernels::Facet& b, double limit_squared) {
-  const Vec3d origin = to_double(a.a);
-  const Vec3d normal = cross(to_double(a.b) - origin, to_double(a.c) - origin);
-  const auto height = [&](Vec3f p) { return dot(normal, to_double(p) - origin); };
-  const double first = height(b.a), second = height(b.b), third = height(b.c);
+bool is_beyond_plane(const Corners& a, const Corners& b, double limit_squared) {
+  const auto height = [&](Vec3d p) { return dot(a.normal, p - a.at[0]); };
+  const double first = height(b.at[0]), second = height(b.at[1]), third = height(b.at[2]);
   const double low = std::min({first, second, third}), high = std::max({first, second, third});
-  const double needed = limit_squared * length_squared(normal);
+  const double needed = limit_squared * length_squared(a.normal);
   return (low > 0 && low * low >= needed) || (high < 0 && high * high >= needed);
 }
 
-struct TriangleMetric {
-  const kernels::Facet& facet;
-  Corners corners;
+// Are `a` and `b` farther apart along some way, surely?
+bool is_beyond_along(Vec3d way, const Corners& a, const Corners& b, double limit_squared) {
+  constexpr double kSurely = 1 + 1e-9;
+  const auto along = [&](Vec3d p) { return dot(way, p - a.at[0]); };
+  const double end = std::max({0.0, along(a.at[1]), along(a.at[2])});
+  const double apart = std::min({along(b.at[0]), along(b.at[1]), along(b.at[2])}) - end;
+  return apart > 0 && apart * apart > kSurely * limit_squared * length_squared(way);
+}
+
+struct SurfaceMetric {
+  FacetDistance distance;
   Box3d box;
-  Vec3d middle;
-  double reach;  // of the corners from there
   const kernels::TriangleBvhView& surface;
-  double best_squared;
 
   double bound(const Box3f& other) const {
     return distance_squared(box, {to_double(other.lower), to_double(other.upper)});
   }
-  double limit() const { return best_squared; }
+  double limit() const { return distance.squared(); }
   void visit(std::uint32_t i) {
     const kernels::Facet& other = surface.facets[i];
-    if (bound(kernels::box_of(other)) >= best_squared) return;
-    if (is_beyond_plane(other, facet, best_squared) || is_beyond_plane(facet, other, best_squared)) return;
-    const double beyond = std::sqrt(best_squared) + reach;
-    if (!kernels::is_facet_nearer(middle, other, beyond * beyond)) return;
-    best_squared = std::min(best_squared, distance_squared_between(corners, Corners(other)));
+    if (bound(kernels::box_of(other)) < distance.squared()) distance.look_at(other);
   }
 };
 
@@ -121,6 +114,34 @@ double distance_squared(const Box3d& a, const Box3d& b) {
   return x * x + y * y + z * z;
 }
 
+FacetDistance::Corners::Corners(const kernels::Facet& facet)
+    : at{to_double(facet.a), to_double(facet.b), to_double(facet.c)},
+      normal(cross(at[1] - at[0], at[2] - at[0])) {}
+
+FacetDistance::FacetDistance(const kernels::Facet& facet, double limit)
+    : corners_(facet),
+      middle_((corners_.at[0] + corners_.at[1] + corners_.at[2]) * (1.0 / 3)),
+      squared_(limit * limit) {
+  double farthest = 0;
+  for (const Vec3d corner : corners_.at) farthest = std::max(farthest, length_squared(corner - middle_));
+  reach_ = std::sqrt(farthest) * (1 + 1e-12);
+}
+
+void FacetDistance::look_at(const kernels::Facet& other) {
+  const Corners corners(other);
+  if (is_beyond_plane(corners, corners_, squared_) || is_beyond_plane(corners_, corners, squared_)) return;
+  const double beyond = std::sqrt(squared_) + reach_;
+  if (!kernels::is_facet_nearer(middle_, other, beyond * beyond)) return;
+  // Nearly the way between the points of both that are nearest to each other.
+  const Vec3d way = kernels::nearest_point_on_facet(middle_, other).point - middle_;
+  if (is_beyond_along(way, corners_, corners, squared_)) return;
+  squared_ = std::min(squared_, distance_squared_between(corners_, corners));
+}
+
+double FacetDistance::distance() const {
+  return std::sqrt(squared_);
+}
+
 double distance_between(const kernels::Facet& a, const kernels::Facet& b) {
   return std::sqrt(distance_squared_between(Corners(a), Corners(b)));
 }
@@ -128,15 +149,9 @@ double distance_between(const kernels::Facet& a, const kernels::Facet& b) {
 double distance_to_surface(const kernels::Facet& facet, const kernels::TriangleBvhView& surface,
                            double limit) {
   const Box3f box = kernels::box_of(facet);
-  const Vec3d a = to_double(facet.a), b = to_double(facet.b), c = to_double(facet.c);
-  const Vec3d middle = (a + b + c) * (1.0 / 3);
-  const double reach = std::sqrt(
-      std::max({length_squared(a - middle), length_squared(b - middle), length_squared(c - middle)}));
-  TriangleMetric metric{facet,        Corners(facet),      {to_double(box.lower), to_double(box.upper)},
-                        middle,       reach * (1 + 1e-12), surface,
-                        limit * limit};
+  SurfaceMetric metric{FacetDistance(facet, limit), {to_double(box.lower), to_double(box.upper)}, surface};
   surface.walk(metric);
-  return std::sqrt(metric.best_squared);
+  return metric.distance.distance();
 }
 
 }  // namespace aerate

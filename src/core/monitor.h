@@ -22,7 +22,7 @@ class Monitor {
   virtual void notice(std::string_view /*text*/) {}
 
   // Throws InterruptedError when the user has asked to stop. Stages call it between pieces of work of at most
-  // a second or so.
+  // a second or so; also from other threads that work for them, one at a time.
   virtual void check_interrupted() {}
 
   // A file exists from now on that must not outlive a process which is ended abruptly; and: it is gone, or

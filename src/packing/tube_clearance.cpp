@@ -18,31 +18,39 @@ constexpr double kOnSurface = 1e-6;
 
 // The nearest facet along a ray, for the walk of a hierarchy.
 struct RayMetric {
-  Vec3d start, direction;
+  Vec3d start, direction, inverse;
   double best;
   kernels::View<const kernels::Facet> facets;
 
+  RayMetric(Vec3d from, Vec3d along, double longest, kernels::View<const kernels::Facet> of)
+      : start(from),
+        direction(along),
+        inverse{1 / along.x, 1 / along.y, 1 / along.z},
+        best(longest),
+        facets(of) {}
+
   double limit() const { return best; }
 
-  // Where the ray enters the box, which may be an empty one.
+  // Where the ray enters the box, which may be an empty one, or just before.
   double bound(const Box3f& box) const {
     if (box.lower.x > box.upper.x) return kInfinity;
     double enters = 0, leaves = kInfinity;
-    const auto clip = [&](double least, double most, double from, double along) {
+    const auto clip = [&](double least, double most, double from, double along, double per_length) {
       if (along == 0) {
         if (from < least || from > most) leaves = -kInfinity;
         return;
       }
-      const double a = (least - from) / along, b = (most - from) / along;
+      const double a = (least - from) * per_length, b = (most - from) * per_length;
       enters = std::max(enters, std::min(a, b));
       leaves = std::min(leaves, std::max(a, b));
     };
     const Vec3d lower = to_double(box.lower), upper = to_double(box.upper);
-    clip(lower.x, upper.x, start.x, direction.x);
-    clip(lower.y, upper.y, start.y, direction.y);
-    clip(lower.z, upper.z, start.z, direction.z);
-    if (enters > leaves) return kInfinity;
-    return enters;
+    clip(lower.x, upper.x, start.x, direction.x, inverse.x);
+    clip(lower.y, upper.y, start.y, direction.y, inverse.y);
+    clip(lower.z, upper.z, start.z, direction.z, inverse.z);
+    // More than products are rounded by.
+    constexpr double kRounding = 1e-12;
+    return enters * (1 - kRounding) > leaves * (1 + kRounding) ? kInfinity : enters * (1 - kRounding);
   }
 
   // After T. Moeller and B. Trumbore, "Fast, minimum storage ray/triangle intersection" (1997).
@@ -54,10 +62,11 @@ struct RayMetric {
     if (determinant == 0) return;
     const Vec3d from_a = start - a;
     const double u = dot(from_a, p) / determinant;
+    if (!(u >= 0 && u <= 1)) return;
     const Vec3d q = cross(from_a, ab);
     const double v = dot(direction, q) / determinant;
     const double t = dot(ac, q) / determinant;
-    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < best) best = t;
+    if (v >= 0 && u + v <= 1 && t > 0 && t < best) best = t;
   }
 };
 
@@ -94,7 +103,7 @@ double TubeClearance::to_surface(Vec3d point, double limit) const {
 }
 
 std::optional<double> TubeClearance::first_hit(Vec3d start, Vec3d direction, double longest) const {
-  RayMetric metric{start, direction, longest, bvh_.facets};
+  RayMetric metric(start, direction, longest, bvh_.facets);
   bvh_.walk(metric);
   if (metric.best >= longest) return std::nullopt;
   return metric.best;

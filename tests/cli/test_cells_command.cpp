@@ -84,13 +84,17 @@ TEST(CellsCommand, AFilletIsOneOfCells) {
   EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
 }
 
-TEST(CellsCommand, CellsNeedNoCeilingsToBeLimited) {
+TEST(CellsCommand, CeilingsThatAreLimitedGetRoofs) {
   const Job job;
-  const ProcessResult result =
-      run(job.hollow(job.input("block.stl", block()), {"--process", "fdm", "--shape", "cells"}));
-  EXPECT_EQ(result.exit_code, kUsage);
-  EXPECT_TRUE(contains(result.err, "cells get no roofs"));
-  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+  const auto model = job.input("block.stl", make_box({0, 0, 0}, {30, 30, 30}));
+  const std::vector<std::string> options{"--process", "fdm", "--shape", "cells"};
+  const Json roofed = json_of(job.hollow(model, options));
+  expect_sound(job, roofed, 1 + roofed["voids"]["count"].get<std::size_t>());
+  EXPECT_LE(roofed["ceilings"]["widest_mm"].get<double>(),
+            roofed["limits"]["bridge_mm"].get<double>() + roofed["voids"]["tolerance_used_mm"].get<double>());
+  std::vector<std::string> without = options;
+  without.insert(without.end(), {"--bridge", "30"});
+  EXPECT_LT(removed_by(roofed), removed_by(json_of(job.hollow(model, without))));
 }
 
 TEST(CellsCommand, AFilletThatFitsNowhereLeavesNothingToRemove) {

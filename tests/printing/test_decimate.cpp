@@ -15,6 +15,13 @@
 namespace aerate {
 namespace {
 
+Decimated decimated(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                    double tolerance) {
+  Monitor silent;
+  SharedWork work(silent);
+  return decimate(positions, triangles, tolerance, work);
+}
+
 // What is beside a vertex that went may move a bit farther away from it, by later steps.
 constexpr double kAbout = 1.3;
 
@@ -98,7 +105,7 @@ TEST(Decimate, ASphereStaysWithinTheTolerance) {
   std::size_t before = sphere.triangles.size();
   for (const double tolerance : {0.03, 0.06, 0.2, 1.0}) {
     SCOPED_TRACE(tolerance);
-    const Decimated fewer = decimate(sphere.positions, sphere.triangles, tolerance);
+    const Decimated fewer = decimated(sphere.positions, sphere.triangles, tolerance);
     const Mesh left = expect_good(sphere, fewer, tolerance, 2);
     EXPECT_LT(left.triangles.size(), before);
     before = left.triangles.size();
@@ -112,7 +119,7 @@ TEST(Decimate, ASphereStaysWithinTheTolerance) {
 TEST(Decimate, FlatFacesComeDownToAFewTriangles) {
   const Surface cube = fine_cube(32);
   EXPECT_EQ(cube.triangles.size(), 12288U);
-  const Decimated fewer = decimate(cube.positions, cube.triangles, 0.01);
+  const Decimated fewer = decimated(cube.positions, cube.triangles, 0.01);
   const Mesh left = expect_good(cube, fewer, 0.01, 2);
   EXPECT_LE(left.triangles.size(), 120U);
   EXPECT_NEAR(signed_volume(left), 1000, 3);
@@ -122,7 +129,7 @@ TEST(Decimate, ATorusKeepsItsHole) {
   const Surface torus = surface_of(test::make_torus(10, 3, 80, 40));
   for (const double tolerance : {0.05, 0.5, 5.0}) {
     SCOPED_TRACE(tolerance);
-    const Decimated fewer = decimate(torus.positions, torus.triangles, tolerance);
+    const Decimated fewer = decimated(torus.positions, torus.triangles, tolerance);
     const Mesh left = expect_good(torus, fewer, tolerance, 0);
     EXPECT_LT(left.triangles.size(), 2 * torus.triangles.size() / 3);
   }
@@ -131,12 +138,12 @@ TEST(Decimate, ATorusKeepsItsHole) {
 // Poles with 80 triangles each.
 TEST(Decimate, VerticesOfManyTrianglesAreLeftAlone) {
   const Surface sphere = surface_of(test::make_uv_sphere(10, 40, 80));
-  expect_good(sphere, decimate(sphere.positions, sphere.triangles, 0.1), 0.1, 2);
+  expect_good(sphere, decimated(sphere.positions, sphere.triangles, 0.1), 0.1, 2);
 }
 
 TEST(Decimate, NothingSmallerThanATetrahedronIsLeft) {
   const Surface box = surface_of(test::make_box({0, 0, 0}, {1, 1, 1}));
-  const Decimated fewer = decimate(box.positions, box.triangles, 100);
+  const Decimated fewer = decimated(box.positions, box.triangles, 100);
   EXPECT_TRUE(test::is_closed_manifold(mesh_of(box, fewer)));
   EXPECT_GE(fewer.triangles.size(), 4U);
 }
@@ -144,41 +151,41 @@ TEST(Decimate, NothingSmallerThanATetrahedronIsLeft) {
 TEST(Decimate, TwoShellsStayTwo) {
   const Surface two = surface_of(
       test::join(test::make_uv_sphere(5, 20, 30), test::moved(test::make_uv_sphere(5, 20, 30), {20, 0, 0})));
-  const Mesh left = expect_good(two, decimate(two.positions, two.triangles, 0.2), 0.2, 4);
+  const Mesh left = expect_good(two, decimated(two.positions, two.triangles, 0.2), 0.2, 4);
   EXPECT_LT(left.triangles.size(), two.triangles.size());
 }
 
 TEST(Decimate, WithoutAToleranceACurvedSurfaceStays) {
   const Surface sphere = fine_sphere(10, 8);
-  const Decimated fewer = decimate(sphere.positions, sphere.triangles, 0);
+  const Decimated fewer = decimated(sphere.positions, sphere.triangles, 0);
   EXPECT_EQ(fewer.vertices.size(), sphere.positions.size());
   EXPECT_EQ(fewer.triangles, sphere.triangles);
 }
 
 TEST(Decimate, WithoutAToleranceNothingMoves) {
   const Surface cube = fine_cube(8);
-  expect_good(cube, decimate(cube.positions, cube.triangles, 0), 0, 2);
+  expect_good(cube, decimated(cube.positions, cube.triangles, 0), 0, 2);
 }
 
 TEST(Decimate, IsTheSameEachTime) {
   const Surface sphere = fine_sphere(10, 16);
-  const Decimated first = decimate(sphere.positions, sphere.triangles, 0.1);
-  const Decimated second = decimate(sphere.positions, sphere.triangles, 0.1);
+  const Decimated first = decimated(sphere.positions, sphere.triangles, 0.1);
+  const Decimated second = decimated(sphere.positions, sphere.triangles, 0.1);
   EXPECT_EQ(first.vertices, second.vertices);
   EXPECT_EQ(first.triangles, second.triangles);
 }
 
 TEST(Decimate, FarFromTheOriginItIsAsGood) {
   Surface sphere = fine_sphere(10, 16);
-  const std::size_t near = decimate(sphere.positions, sphere.triangles, 0.1).triangles.size();
+  const std::size_t near = decimated(sphere.positions, sphere.triangles, 0.1).triangles.size();
   for (Vec3d& p : sphere.positions) p = p + Vec3d{1e5, -2e5, 3e5};
-  const Decimated far = decimate(sphere.positions, sphere.triangles, 0.1);
+  const Decimated far = decimated(sphere.positions, sphere.triangles, 0.1);
   EXPECT_NEAR(static_cast<double>(far.triangles.size()), static_cast<double>(near),
               0.05 * static_cast<double>(near));
 }
 
 TEST(Decimate, NothingComesOfNothing) {
-  const Decimated none = decimate({}, {}, 1);
+  const Decimated none = decimated({}, {}, 1);
   EXPECT_TRUE(none.vertices.empty());
   EXPECT_TRUE(none.triangles.empty());
 }

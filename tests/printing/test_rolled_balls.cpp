@@ -33,8 +33,11 @@ std::vector<std::size_t> void_of(const std::vector<std::array<std::int32_t, 3>>&
   CellNodes nodes = solid_nodes(kRadius);
   for (const auto& [i, j, k] : places) nodes.depth[nodes.box.index(i, j, k)] = kRadius;
   const SurfaceIndex surface(test::make_box({-20, -20, -20}, {20, 20, 20}));
-  const CellRegion region({}, surface, 2);
-  const OpenedCell opened = open_cell(region, nodes, {{0, 0, 0}, 0.1, SphereKind::adaptive});
+  const NearFacets near(surface.bvh());
+  const CellRegion region({}, surface, near, 2);
+  Monitor silent;
+  SharedWork work(silent);
+  const OpenedCell opened = open_cell(region, nodes, {{0, 0, 0}, 0.1, SphereKind::adaptive}, work);
   std::vector<std::size_t> result;
   for (std::size_t node = 0; node < opened.is_void.size(); ++node)
     if (opened.is_void[node] != 0) result.push_back(node);

@@ -454,15 +454,57 @@ TEST(ShapeCells, SaysWhereACellIsTooLarge) {
       test::contains(test::message_of<UsageError>([&] { shaped(model, packing, fine); }), "too large"));
 }
 
-TEST(ShapeCells, StopsWhenInterrupted) {
-  class Interrupted : public Monitor {
-   public:
-    void check_interrupted() override { throw InterruptedError(); }
+TEST(ShapeCells, SaysSoBeforeAnyCellIsLookedAt) {
+  class NeverAsked : public Monitor {
+    void check_interrupted() override { ADD_FAILURE() << "a cell is being shaped"; }
   } monitor;
-  const Mesh model = test::make_box({0, 0, 0}, {20, 20, 20});
-  const Packing packing = packing_of({ball({10, 10, 10}, 7)});
-  EXPECT_THROW(shape_cells(SurfaceIndex(model), packing, planes_of(model, packing), kShape, monitor),
-               InterruptedError);
+  const Mesh model = test::make_box({0, 0, 0}, {40, 20, 20});
+  const Packing packing = packing_of({ball({10, 10, 10}, 7), ball({30, 10, 10}, 7)});
+  const CellShape fine{.fillet = 0.05, .tolerance = 0.05};
+  const CellPlanes planes = planes_of(model, packing);
+  EXPECT_TRUE(test::contains(
+      test::message_of<UsageError>([&] { shape_cells(SurfaceIndex(model), packing, planes, fine, monitor); }),
+      "too large"));
+}
+
+TEST(ShapeCells, WhatKeepsTheWallIsNotFarFromWhatWasPlanned) {
+  // Dents, which a void bends round: vertices are moved to keep the wall.
+  Mesh model = test::make_uv_sphere(20, 30, 30);
+  for (Vec3f& p : model.positions)
+    p = p * (1 + 0.2F * std::sin(p.x * 0.4F) * std::sin(p.y * 0.4F) * std::sin(p.z * 0.4F));
+  const Packing packing = packing_of({ball({0, 0, 0}, 10)});
+  const CellShape shape{.fillet = 1.75, .tolerance = 0.1};
+  const CellVoids cells = shaped(model, packing, shape);
+  ASSERT_EQ(cells.voids.size(), 1U);
+  EXPECT_LE(cells.voids.front().deviation, 1.2 * shape.tolerance);
+}
+
+// Asked to stop at some question, or at none.
+class StoppedAt : public Monitor {
+ public:
+  explicit StoppedAt(int question) : question_(question) {}
+  int asked() const { return asked_; }
+  void check_interrupted() override {
+    if (++asked_ == question_) throw InterruptedError();
+  }
+
+ private:
+  int question_, asked_ = 0;
+};
+
+TEST(ShapeCells, StopsWhenInterruptedWithinASingleCell) {
+  const Mesh model = test::make_box({0, 0, 0}, {30, 30, 30});
+  const Packing packing = packing_of({ball({15, 15, 15}, 12)});
+  const SurfaceIndex surface(model);
+  const CellPlanes planes = planes_of(model, packing);
+  StoppedAt none(0);
+  shape_cells(surface, packing, planes, kShape, none);
+  EXPECT_GT(none.asked(), 300);
+  for (const int question : {1, 2, 20, 100, 200, none.asked() / 2}) {
+    StoppedAt monitor(question);
+    EXPECT_THROW(shape_cells(surface, packing, planes, kShape, monitor), InterruptedError) << question;
+    EXPECT_LE(monitor.asked(), none.asked());
+  }
 }
 
 TEST(ShapeCells, CarvesTheVoidsInTheirOrder) {

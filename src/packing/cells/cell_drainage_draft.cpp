@@ -72,10 +72,14 @@ double volume_of(const CellDrainageTask& task, const CellMembers& members) {
 
 bool keeps_clear(const CellDrainageTask& task, const CellDraft& draft, const Tube& tube, std::uint32_t from,
                  std::uint32_t to) {
+  const double tube_length = length(tube.end - tube.start);
   const auto is_clear_of = [&](const Tube& other, std::uint32_t other_from, std::uint32_t other_to) {
     const bool meet = other_from == from || other_from == to || other_to == from || other_to == to;
     const double openings = tube_spacing(tube.radius, other.radius);
     const double spacing = meet ? openings : std::max(openings, tube.radius + other.radius + task.limits.gap);
+    // Most are so far off that one end of each tells.
+    if (length(other.start - tube.start) > spacing + tube_length + length(other.end - other.start))
+      return true;
     return distance_between({tube.start, tube.end}, {other.start, other.end}) >= spacing;
   };
   return std::all_of(draft.windows.begin(), draft.windows.end(),
