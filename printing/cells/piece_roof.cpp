@@ -213,21 +213,38 @@ class TentFinder {
   }
 
   std::vector<CellPlane> find() const {
-    Tent best;
-    std::size_t most = 0;
+    Found best;
     for (const auto& [held, under] : best_places()) {
-      for (int kept = 0; kept < kSides / 2; ++kept) {
-        const Tent tent = widened(tent_under(under), kept);
-        const std::size_t count = count_in(tent);
-        if (count <= most) continue;
-        most = count;
-        best = tent;
+      for (int kept = 0; kept < kSides / 2; ++kept) best = better(best, under, kept);
+    }
+    if (best.count == 0) return {};
+    // Between the places that were looked at.
+    constexpr int kHalvings = 4;
+    double step = place_step() / 2;
+    for (int i = 0; i < kHalvings; ++i, step /= 2) {
+      const Found from = best;
+      for (const auto& [x, y] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        const double to_x = from.under.x + x * step, to_y = from.under.y + y * step;
+        best = better(best, {to_x, to_y, top_at(to_x, to_y)}, from.kept);
       }
     }
-    return most == 0 ? std::vector<CellPlane>{} : planes_of(best);
+    return planes_of(best.tent);
   }
 
  private:
+  struct Found {
+    Tent tent;
+    Vec3d under{0, 0, 0};
+    int kept = 0;
+    std::size_t count = 0;  // of samples in it
+  };
+
+  Found better(const Found& known, Vec3d under, int kept) const {
+    const Tent tent = widened(tent_under(under), kept);
+    const std::size_t count = count_in(tent);
+    return count > known.count ? Found{tent, under, kept, count} : known;
+  }
+
   // Some of the balls' centres, evenly.
   void sample(const CellNodes& nodes, const std::vector<std::int32_t>& labels, std::int32_t piece) {
     constexpr std::size_t kMost = 4000;
@@ -243,12 +260,15 @@ class TentFinder {
           if (is_in(box.index(i, j, k))) samples_.push_back(frame_.to_frame(box.at(i, j, k)));
       }
     }
-    for (const Vec3d p : samples_) highest_ = std::max(highest_, p.z);
+    for (const Vec3d p : samples_) {
+      lowest_ = min_of(lowest_, p);
+      highest_ = max_of(highest_, p);
+    }
   }
 
   // How high the top of a roof may be at a place seen from above.
   double top_at(double x, double y) const {
-    double top = highest_;
+    double top = highest_.z;
     for (const Vec3d& f : ceilings_) {
       if (f.z >= top) continue;
       double aside = 0;
@@ -258,20 +278,19 @@ class TentFinder {
     return top;
   }
 
+  // Places that are looked at along one side.
+  static constexpr int kAcross = 14;
+
+  double place_step() const { return std::max(highest_.x - lowest_.x, highest_.y - lowest_.y) / kAcross; }
+
   // By how many samples the roofs there hold, the most first.
   std::vector<std::pair<std::size_t, Vec3d>> best_places() const {
-    constexpr int kAcross = 14;
     constexpr std::size_t kTaken = 12;
-    double x0 = kInfinity, y0 = kInfinity, x1 = -kInfinity, y1 = -kInfinity;
-    for (const Vec3d& p : samples_) {
-      x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
-      y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
-    }
     std::vector<std::pair<std::size_t, Vec3d>> places;
     for (int row = 0; row < kAcross; ++row) {
       for (int column = 0; column < kAcross; ++column) {
-        const double x = x0 + (x1 - x0) * (column + 0.5) / kAcross,
-                     y = y0 + (y1 - y0) * (row + 0.5) / kAcross;
+        const double x = lowest_.x + (highest_.x - lowest_.x) * (column + 0.5) / kAcross;
+        const double y = lowest_.y + (highest_.y - lowest_.y) * (row + 0.5) / kAcross;
         const Vec3d under{x, y, top_at(x, y)};
         const std::size_t held = count_in(tent_under(under));
         if (held > 0) places.emplace_back(held, under);
@@ -337,7 +356,7 @@ class TentFinder {
   double tangent_, half_top_, ball_radius_;
   std::array<Vec3d, kSides> sides_;
   std::vector<Vec3d> ceilings_, samples_;  // in the frame
-  double highest_ = -kInfinity;
+  Vec3d lowest_{kInfinity, kInfinity, kInfinity}, highest_{-kInfinity, -kInfinity, -kInfinity};  // of samples
 };
 
 }  // namespace

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/ceiling.h"
 #include "core/error.h"
 #include "core/facet_distance.h"
+#include "core/overhang.h"
 #include "core/surface_index.h"
 #include "kernels/triangle_bvh.h"
 #include "packing/packing_cells.h"
@@ -235,6 +237,45 @@ TEST(ShapeCells, AGridOfSpheresGivesAVoidForEach) {
     EXPECT_LE(volume_of(piece), expected);
     EXPECT_GE(volume_of(piece), 0.985 * expected);
   }
+}
+
+// Under a ridge as long as the cell: the section across it loses a triangle on either side. There voids of their own
+// may be.
+TEST(ShapeCells, ACeilingTooWideGetsARoofWhateverIsUp) {
+  constexpr double kSide = 30, kInside = kSide - 2 * kWall, kBridge = 4;
+  const Mesh model = test::make_box({0, 0, 0}, {kSide, kSide, kSide});
+  for (const Vec3d up : {Vec3d{0, 0, 1}, Vec3d{0, 0, -1}, Vec3d{1, 0, 0}}) {
+    SCOPED_TRACE(up.x + 2 * up.z);
+    Packing packing = packing_of({ball({kSide / 2, kSide / 2, kSide / 2}, 12)});
+    packing.limits.roof = make_roof({.degrees = 45, .bridge = kBridge, .up = up});
+    const CellVoids cells = shaped(model, packing);
+    ASSERT_FALSE(cells.voids.empty());
+    expect_sound(model, packing, cells);
+    double widest = 0;
+    for (const CellVoid& piece : cells.voids) {
+      for (const Ceiling& ceiling : ceilings_of(piece.surface, piece.surface.triangles, packing.limits.roof))
+        widest = widest_disc(ceiling, widest);
+    }
+    EXPECT_LE(widest, kBridge + kShape.tolerance);
+    EXPECT_GT(widest, kBridge / 2);
+    const double beside = (kInside - kBridge) / 2;
+    const double below_ridge =
+        rounded_box_volume({kInside, kInside, kInside}, kShape.fillet) - beside * beside * kInside;
+    EXPECT_GT(volume_of(cells.voids.front()), 0.94 * below_ridge);
+    EXPECT_LT(volume_of(cells.voids.front()), 1.01 * below_ridge);
+  }
+}
+
+// What leans by the overhang angle carries itself; a roof takes nothing from it.
+TEST(ShapeCells, ACeilingThatCarriesItselfIsLeftAsItIs) {
+  Mesh gable = test::make_box({0, 0, 0}, {30, 30, 30});
+  for (Vec3f& p : gable.positions) p = {p.x, (p.y - p.z) * 0.75F, (p.y + p.z) * 0.75F};
+  Packing packing = packing_of({ball({15, 0, 22.5}, 12)});
+  const CellVoids free = shaped(gable, packing);
+  packing.limits.roof = make_roof({.degrees = 45, .bridge = 4});
+  const CellVoids roofed = shaped(gable, packing);
+  ASSERT_EQ(roofed.voids.size(), 1);
+  EXPECT_EQ(roofed.voids.front().surface.positions, free.voids.front().surface.positions);
 }
 
 TEST(ShapeCells, SameBytesForAnyThreadCount) {
