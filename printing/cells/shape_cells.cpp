@@ -143,6 +143,7 @@ class CellShaper {
       CellVoid made =
           make(cell, region, surface, runs_of_piece(nodes.box, roofed->opened.labels, *roofed->opened.piece));
       if (!is_bridged(made.surface)) continue;
+      made.has_roof = roofed->planes.size() > planes.size();
       voids.push_back(std::move(made));
       keep_away_from(nodes, roofed->opened.labels, *roofed->opened.piece);
       return;

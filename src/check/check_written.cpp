@@ -219,6 +219,7 @@ MeasuredVoids measure_cells(const Mesh& read_back, const Expected& expected, Mon
     const double radius = expected.packing.spheres[piece.cell].radius;
     result.smallest_radius = std::min(result.smallest_radius, radius);
     result.largest_radius = std::max(result.largest_radius, radius);
+    result.roof_count += piece.has_roof ? 1 : 0;
   }
   return result;
 }

@@ -30,6 +30,7 @@ struct NodeLattice {
 // One connected piece of a cell.
 struct CellVoid {
   std::uint32_t cell = 0;     // of which sphere of the packing
+  bool has_roof = false;      // under planes of its own, that carry themselves or can be bridged
   Mesh surface;               // closed, facing into the void
   std::int64_t euler = 2;     // Euler characteristic of the surface, counted on the nodes
   double planned_volume = 0;  // of the surface before triangles were taken out

@@ -84,17 +84,6 @@ struct WrittenFile {
   Balance balance;
 };
 
-// Cells have no roofs.
-void warn_of_ceilings(const HollowedModel& hollowed, const OutputFacts& facts, Monitor& monitor) {
-  const double bridge = hollowed.packing.limits.roof.bridge();
-  if (!hollowed.cells || !facts.ceilings || facts.ceilings->widest <= bridge) return;
-  monitor.notice(
-      fmt::format("cells have ceilings of up to {:.1f} mm, and the printer bridges {:g} mm: what is printed "
-                  "above them may sag; "
-                  "--shape spheres makes roofs, a smaller --cell-size narrower ceilings",
-                  facts.ceilings->widest, bridge));
-}
-
 WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, const HollowOptions& options,
                      Monitor& monitor) {
   WrittenFile written;
@@ -111,7 +100,6 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
                                    .outer = surface_of(hollowed.model)},
                                   monitor);
     written.bytes = std::filesystem::file_size(pending.file().path());
-    warn_of_ceilings(hollowed, written.facts, monitor);
     if (options.modifiers) return;
     written.balance = balance_of(hollowed.model.mesh, written.facts, hollowed.packing.limits.roof.up);
     warn_of_tipping(written.balance, written.facts, monitor);

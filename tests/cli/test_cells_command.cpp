@@ -92,6 +92,7 @@ TEST(CellsCommand, CeilingsThatAreLimitedGetRoofs) {
   expect_sound(job, roofed, 1 + roofed["voids"]["count"].get<std::size_t>());
   EXPECT_LE(roofed["ceilings"]["widest_mm"].get<double>(),
             roofed["limits"]["bridge_mm"].get<double>() + roofed["voids"]["tolerance_used_mm"].get<double>());
+  EXPECT_GE(roofed["ceilings"]["roofs"], 1);
   std::vector<std::string> without = options;
   without.insert(without.end(), {"--bridge", "30"});
   EXPECT_LT(removed_by(roofed), removed_by(json_of(job.hollow(model, without))));
