@@ -161,8 +161,8 @@ class CeilingFinder {
     // Of each square how many squares around it are in the ceiling too.
     std::vector<std::uint16_t> rings(columns * rows, 0);
     for (const Vec3d p : places) {
-      const auto column = static_cast<std::size_t>((p.x - x0) / side + 0.5) + 1;
-      const auto row = static_cast<std::size_t>((p.y - y0) / side + 0.5) + 1;
+      const auto column = static_cast<std::size_t>(std::lround((p.x - x0) / side)) + 1;
+      const auto row = static_cast<std::size_t>(std::lround((p.y - y0) / side)) + 1;
       rings[row * columns + column] = 1;
     }
     std::uint16_t most = 0;

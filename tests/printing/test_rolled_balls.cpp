@@ -30,7 +30,7 @@ CellNodes solid_nodes(double ball_radius) {
 // The void's nodes of those that have a ball which holds no other node.
 std::vector<std::size_t> void_of(const std::vector<std::array<std::int32_t, 3>>& places) {
   constexpr float kRadius = 0.2F;
-  CellNodes nodes = solid_nodes(kRadius);
+  CellNodes nodes = solid_nodes(static_cast<double>(kRadius));
   for (const auto& [i, j, k] : places) nodes.depth[nodes.box.index(i, j, k)] = kRadius;
   const SurfaceIndex surface(test::make_box({-20, -20, -20}, {20, 20, 20}));
   const NearFacets near(surface.bvh());
