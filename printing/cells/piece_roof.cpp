@@ -156,8 +156,8 @@ class CeilingFinder {
       x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
       y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
     }
-    const auto columns = static_cast<std::size_t>((x1 - x0) / side) + 3;
-    const auto rows = static_cast<std::size_t>((y1 - y0) / side) + 3;
+    const auto columns = static_cast<std::size_t>((x1 - x0) / side) + 4;
+    const auto rows = static_cast<std::size_t>((y1 - y0) / side) + 4;
     // Of each square how many squares around it are in the ceiling too.
     std::vector<std::uint16_t> rings(columns * rows, 0);
     for (const Vec3d p : places) {

@@ -93,7 +93,7 @@ double farthest(const Surface& surface, const Mesh& left) {
 Mesh expect_good(const Surface& surface, const Decimated& fewer, double tolerance, long euler) {
   EXPECT_TRUE(std::ranges::is_sorted(fewer.vertices));
   EXPECT_EQ(std::ranges::adjacent_find(fewer.vertices), fewer.vertices.end());
-  const Mesh left = mesh_of(surface, fewer);
+  Mesh left = mesh_of(surface, fewer);
   EXPECT_TRUE(test::is_closed_manifold(left));
   EXPECT_EQ(test::euler_characteristic(left), euler);
   EXPECT_LE(farthest(surface, left), kAbout * tolerance + 1e-5);  // fp32

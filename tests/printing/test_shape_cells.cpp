@@ -216,8 +216,11 @@ TEST(ShapeCells, APlaneWallAsThickAsTheGapPartsTwoCells) {
 // Spheres in the middles of boxes of 12 mm.
 Packing grid_packing() {
   std::vector<Sphere> spheres;
-  for (int i = 0; i < 27; ++i)
-    spheres.push_back(ball({6.0 + 12 * (i % 3), 6.0 + 12 * (i / 3 % 3), 6.0 + 12 * (i / 9)}, 4));
+  for (const double z : {6.0, 18.0, 30.0}) {
+    for (const double y : {6.0, 18.0, 30.0}) {
+      for (const double x : {6.0, 18.0, 30.0}) spheres.push_back(ball({x, y, z}, 4));
+    }
+  }
   return packing_of(std::move(spheres));
 }
 
