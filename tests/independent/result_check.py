@@ -209,14 +209,27 @@ class ResultCheck:
         roofs = report["ceilings"]["roofs"] if report["ceilings"] else 0
         least, most = limits["min_radius_mm"] - report["voids"]["tolerance_used_mm"], limits["max_radius_mm"]
         self.require(radii.min() >= least * (0.9 if roofs else 1) - 1e-6, f"a void of radius {radii.min():.6g} mm")
-        self.require(radii.max() <= most * (1.3 if roofs else 1) + 1e-6, f"a void of radius {radii.max():.6g} mm")
+        is_ball = report["voids"]["shape"] == "spheres"  # cells are as large as their share of the model
+        self.require(not is_ball or radii.max() <= most * (1.3 if roofs else 1) + 1e-6,
+                     f"a void of radius {radii.max():.6g} mm")
         self.walls_and_gaps(corners, labels, count)
-        centres = np.stack([np.bincount(labels, corners.mean(axis=1)[:, axis], count) for axis in range(3)], 1)
-        centres /= np.bincount(labels, minlength=count)[:, None]
+        if is_ball:
+            centres = np.stack([np.bincount(labels, corners.mean(axis=1)[:, axis], count) for axis in range(3)], 1)
+            centres /= np.bincount(labels, minlength=count)[:, None]
+        else:
+            centres = self.beside_largest_triangles(corners, labels, count)
         some = self.random.permutation(count)[:max(2, min(24, 3_000_000 // len(self.corners)))]
         inside = winding_numbers(self.corners, centres[some])
         if report["input"]["overlapping_shells"] == 0 or not self.kept:
             self.require(np.abs(inside).max() < 1e-3, f"the middle of a void has winding number {inside[np.abs(inside).argmax()]:.3g}")
+
+    def beside_largest_triangles(self, corners, labels, count):
+        """A place in each void: it may have any shape."""
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        areas = np.linalg.norm(normals, axis=1)
+        order = np.lexsort((areas, labels))
+        largest = order[np.searchsorted(labels[order], np.arange(count), side="right") - 1]
+        return corners[largest].mean(axis=1) + 0.01 * normals[largest] / areas[largest][:, None]
 
     def walls_and_gaps(self, corners, labels, count):
         limits = self.report["limits"]
