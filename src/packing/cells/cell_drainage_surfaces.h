@@ -29,7 +29,7 @@ class CellSurfaces {
   const TubeClearance& model() const { return model_; }
   const TubeClearance& voids() const { return voids_; }
 
-  // Is the axis farther than radius + gap from the surfaces of voids other than those two?
+  // Is the axis, from end to end, farther than radius + gap from the surfaces of voids other than those two?
   bool keeps_gap(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
 
  private:

@@ -82,7 +82,7 @@ bool WaysOut::is_sound(const CellWayOut& way) const {
   }
   if (first_out < way.last + kClearance) return false;
   const Tube outside{tube.start + axis * way.first, tube.end, radius_};
-  return surfaces_.keeps_gap(outside, way.hole.from, way.hole.from) &&
+  return surfaces_.keeps_gap(tube, way.hole.from, way.hole.from) &&
          surfaces_.model().keeps_wall_on_way_out(outside, kLeastSlope);
 }
 

@@ -103,7 +103,7 @@ class WindowFinder {
     for (const Vec3d start : lines_round(tube.start, tube, limits_.roof.up)) {
       if (!surfaces_.model().keeps_wall({start, start + along, 0})) return false;
     }
-    return surfaces_.keeps_gap(tube, window.channel.from, window.channel.to);
+    return surfaces_.keeps_gap(window.channel.tube, window.channel.from, window.channel.to);
   }
 
   const CellVoids& cells_;
