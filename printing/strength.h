@@ -13,4 +13,13 @@ inline constexpr double kPoissonRatio = 0.35;
 //   solid_fraction: 0..1; poisson_ratio: of the material, -1 < ratio < 0.5
 double stiffness_upper_bound(double solid_fraction, double poisson_ratio = kPoissonRatio);
 
+// Of blocks with skins and sealed voids: the mean Young's modulus along their axes, relative to that bound, as
+// finite elements give it (bench/bench_stiffness; docs/cells.md). The skins lie along the load, so it can pass 1.
+struct ShareOfBound {
+  double least = 1;
+  double most = 1;
+};
+inline constexpr ShareOfBound kBlocksWithSpheres{1.00, 1.03};
+inline constexpr ShareOfBound kBlocksWithCells{1.01, 1.10};
+
 }  // namespace aerate

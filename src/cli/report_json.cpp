@@ -175,10 +175,11 @@ Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
             {"full", drainage.dropped.full}}}};
 }
 
-Json json_of(const Balance& balance, const OutputFacts& output) {
+Json json_of(const Balance& balance, const OutputFacts& output, const ShareOfBound& blocks) {
   return {{"solid_fraction", output.volume_after / output.volume_before},
           {"relative_stiffness_upper_bound", balance.stiffness},
           {"poisson_ratio", kPoissonRatio},
+          {"blocks_relative_to_bound", {{"least", blocks.least}, {"most", blocks.most}}},
           {"footing_margin_before_mm", or_null(balance.margin_before)},
           {"footing_margin_after_mm", or_null(balance.margin_after)},
           {"tips_over", balance.tips_over()}};
@@ -248,7 +249,10 @@ std::string to_json(const HollowReport& report) {
   json["centre_of_mass"] = {
       {"before_mm", json_of(output.centre_of_mass_before)},
       {"after_mm", report.modifiers ? Json(nullptr) : json_of(output.centre_of_mass_after)}};
-  json["strength_and_balance"] = report.modifiers ? Json(nullptr) : json_of(report.balance, output);
+  json["strength_and_balance"] =
+      report.modifiers
+          ? Json(nullptr)
+          : json_of(report.balance, output, report.cells ? kBlocksWithCells : kBlocksWithSpheres);
   json["print"] = report.print ? json_of(*report.print) : Json(nullptr);
   json["material"] = material_of(report);
   add_closing(json, report.stages, report.notices);

@@ -8,6 +8,7 @@
 #include "core/printable.h"
 #include "pipeline/memory.h"
 #include "printing/slicers/slicers.h"
+#include "printing/strength.h"
 
 namespace aerate::cli {
 namespace {
@@ -117,9 +118,13 @@ std::string margin_in_words(double margin) {
 
 void add_balance(Lines& lines, const HollowReport& report) {
   const OutputFacts& output = report.output;
-  lines.add("strength",
-            "{:.1f} % solid; stiffness at most about {:.0f} % (Hashin-Shtrikman bound, an estimate)",
-            100 * output.volume_after / output.volume_before, 100 * report.balance.stiffness);
+  const ShareOfBound& blocks = report.cells ? kBlocksWithCells : kBlocksWithSpheres;
+  lines.add(
+      "strength",
+      "{:.1f} % solid; stiffness about {:.0f} % (Hashin-Shtrikman bound, an estimate; blocks with {} had "
+      "{:.2f} to {:.2f} of it)",
+      100 * output.volume_after / output.volume_before, 100 * report.balance.stiffness,
+      report.cells ? "cells" : "spheres", blocks.least, blocks.most);
   if (!output.centre_of_mass_before || !output.centre_of_mass_after) return;
   lines.add("balance", "centre of mass {} -> {} mm, moved by {:.2f} mm", point(*output.centre_of_mass_before),
             point(*output.centre_of_mass_after),

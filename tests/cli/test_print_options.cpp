@@ -174,6 +174,8 @@ TEST(PrintOptions, AModelThatTipsOverByItsVoidsIsReported) {
   EXPECT_TRUE(balance["tips_over"].get<bool>());
   EXPECT_TRUE(contains(report["notices"].dump(), "it tips over"));
   EXPECT_LT(balance["relative_stiffness_upper_bound"].get<double>(), balance["solid_fraction"].get<double>());
+  const Json cells = report_of(job, counterweight(), {"--max-radius", "14", "--shape", "cells"});
+  EXPECT_NE(balance["blocks_relative_to_bound"], cells["strength_and_balance"]["blocks_relative_to_bound"]);
 
   const Json stands = report_of(job, block(), {});
   EXPECT_FALSE(stands["strength_and_balance"]["tips_over"].get<bool>());
