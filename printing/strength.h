@@ -14,7 +14,7 @@ inline constexpr double kPoissonRatio = 0.35;
 double stiffness_upper_bound(double solid_fraction, double poisson_ratio = kPoissonRatio);
 
 // Of blocks with skins and sealed voids: the mean Young's modulus along their axes, relative to that bound, as
-// finite elements give it (bench/bench_stiffness; docs/cells.md). The skins lie along the load, so it can pass 1.
+// finite elements give it (bench/bench_stiffness; docs/cells.md). Skins lie along the load, so it can pass 1.
 struct ShareOfBound {
   double least = 1;
   double most = 1;
