@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <tbb/parallel_for.h>
 #include <utility>
 
+#include "printing/cells/tube_section.h"
 #include "printing/cut_surface.h"
 #include "printing/tube_openings.h"
 
@@ -43,17 +43,15 @@ std::optional<double> passes(Vec3d start, Vec3d direction, const kernels::Facet&
   return dot(ac, q) / determinant;
 }
 
-// Points about an axis, counter-clockwise seen against it, turned by a share of the way to the next.
-std::vector<Vec3d> ring_about(Vec3d centre, Vec3d axis, double radius, std::size_t sides, double turn) {
-  const TubeFrame frame = frame_of({centre, centre + axis, radius}, {0, 0, 1});
-  std::vector<Vec3d> ring;
-  for (std::size_t i = 0; i < sides; ++i) {
-    const double angle = 2 * std::numbers::pi * (static_cast<double>(i) + turn) / static_cast<double>(sides);
-    ring.push_back(centre + frame.down * (radius * std::cos(angle)) +
-                   frame.across * (radius * std::sin(angle)));
-  }
-  if (dot(cross(ring[1] - ring[0], ring[2] - ring[0]), axis) < 0) std::reverse(ring.begin(), ring.end());
-  return ring;
+// What the prism of a tube depends on besides the tube.
+struct TubeShape {
+  const Roof& roof;
+  double tolerance;
+  double turn;
+};
+
+std::vector<Vec3d> section_of(const Tube& tube, const TubeShape& shape) {
+  return tube_section(tube, shape.roof, sides_of(tube, shape.tolerance), shape.turn);
 }
 
 // The two prisms of a tube, from the same ring: the other way its points run the other way round.
@@ -63,13 +61,12 @@ struct PrismPair {
 };
 
 PrismPair prisms_of(const Tube& tube, double ring_at, double inward_length, double onward_length,
-                    double tolerance, double turn) {
+                    const TubeShape& shape) {
   const Vec3d axis = direction_of(tube);
   const Vec3d middle = tube.start + axis * ring_at;
-  const double radius = shrunk(tube).radius;
   PrismPair pair;
-  for (const Vec3d p : ring_about(middle, axis, radius, sides_of(tube, tolerance), turn))
-    pair.onward.ring.push_back(to_float(p));
+  for (const Vec3d p : section_of(shrunk(tube), shape))
+    pair.onward.ring.push_back(to_float(p + axis * ring_at));
   pair.inward.ring.assign(pair.onward.ring.rbegin(), pair.onward.ring.rend());
   // Rounding moves points of the ring along the axis.
   constexpr double kSlack = 1e-3;
@@ -83,17 +80,17 @@ PrismPair prisms_of(const Tube& tube, double ring_at, double inward_length, doub
   return pair;
 }
 
-PrismPair prisms_of_window(const Tube& tube, double tolerance, double turn) {
+PrismPair prisms_of_window(const Tube& tube, const TubeShape& shape) {
   const double half = length(tube.end - tube.start) / 2;
-  return prisms_of(tube, half, half, half, tolerance, turn);
+  return prisms_of(tube, half, half, half, shape);
 }
 
 // nullopt if no plane across the hole lies between the void's surface and the model's.
 std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::uint32_t> near_outside,
-                                        const Mesh& from, const Tube& tube, double tolerance, double turn) {
+                                        const Mesh& from, const Tube& tube, const TubeShape& shape) {
   const Vec3d axis = direction_of(tube);
   const double farthest = length(tube.end - tube.start) + kCutBeyond * tube.radius;
-  std::vector<Vec3d> starts = ring_about(tube.start, axis, tube.radius, sides_of(tube, tolerance), turn);
+  std::vector<Vec3d> starts = section_of(tube, shape);
   starts.push_back(tube.start);
   Passage out_of_void, outside;
   for (const Vec3d start : starts) {
@@ -111,7 +108,7 @@ std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::
   }
   if (!(outside.first - out_of_void.last > kBeyond)) return std::nullopt;
   const double ring_at = (outside.first + out_of_void.last) / 2;
-  return prisms_of(tube, ring_at, ring_at - out_of_void.first + kBeyond, farthest - ring_at, tolerance, turn);
+  return prisms_of(tube, ring_at, ring_at - out_of_void.first + kBeyond, farthest - ring_at, shape);
 }
 
 // A surface that is cut several times. Triangles that are cut away stay in the mesh, marked.
@@ -177,11 +174,12 @@ class Carver {
     cuts_.resize(plan.channels.size() + plan.holes.size());
     tbb::parallel_for(std::size_t{0}, cuts_.size(), [&](std::size_t i) {
       PlannedCut& cut = cuts_[i];
+      const TubeShape shape{plan.roof, tolerance, turns[i]};
       if (i < plan.channels.size()) {
         const Channel& channel = plan.channels[i];
         cut.from = channel.from;
         cut.to = channel.to;
-        cut.prisms = prisms_of_window(channel.tube, tolerance, turns[i]);
+        cut.prisms = prisms_of_window(channel.tube, shape);
         cut.is_made = true;
         return;
       }
@@ -190,8 +188,8 @@ class Carver {
       const Vec3d beyond = direction_of(hole.tube) * (kCutBeyond * hole.tube.radius);
       cut.near_outside =
           surface.triangles_near({hole.tube.start, hole.tube.end + beyond}, hole.tube.radius + kBeyond);
-      const auto prisms = prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube,
-                                         tolerance, turns[i]);
+      const auto prisms =
+          prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube, shape);
       if (!prisms) return;
       cut.prisms = *prisms;
       cut.near_outside = surface.triangles_near(axis_of(cut.prisms.onward), reach_of(cut.prisms.onward));
@@ -302,11 +300,11 @@ class Carver {
 }  // namespace
 
 bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const CellVoid& from, const Tube& hole,
-                double tolerance) {
+                const Roof& roof, double tolerance) {
   const Vec3d beyond = direction_of(hole) * (kCutBeyond * hole.radius);
   const std::vector<std::uint32_t> near =
       surface.triangles_near({hole.start, hole.end + beyond}, hole.radius + kBeyond);
-  const auto prisms = prisms_of_hole(outer, near, from.surface, hole, tolerance, 0);
+  const auto prisms = prisms_of_hole(outer, near, from.surface, hole, {roof, tolerance, 0});
   if (!prisms) return false;
   const CuttingPrism &inward = prisms->inward, &onward = prisms->onward;
   return may_be_cut(outer, surface.triangles_near(axis_of(onward), reach_of(onward)), onward) &&

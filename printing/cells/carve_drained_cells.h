@@ -16,7 +16,7 @@ namespace aerate {
 // Can an escape hole be cut from a void to the outside? Quick; other reasons why not are rare. `outer` is a model's
 // surface, given with its index.
 bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const CellVoid& from, const Tube& hole,
-                double tolerance);
+                const Roof& roof, double tolerance);
 
 // The tubes of a plan, by index, that cannot be cut.
 struct UncutTubes {
@@ -24,7 +24,7 @@ struct UncutTubes {
 };
 
 // Takes cells out of a model, with the windows in the walls between them (the plan's channels, which count
-// `cells.voids`) and the escape holes. A tube is a prism inscribed in it that begins as a ring within the wall and
+// `cells.voids`) and the escape holes. A tube is a prism inscribed in it (printing/cells/tube_section.h) that begins as a ring within the wall and
 // runs from there both ways: into one void, and into the other or to the outside. What it leaves of the surfaces is
 // CGAL's corefinement of the few triangles that it meets (printing/cut_surface.h); all others stay as they are.
 // Throws InterruptedError.

@@ -172,4 +172,32 @@ CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ba
   return nodes;
 }
 
+std::vector<std::int32_t> squared_distances(const NodeBox& box,
+                                            const std::function<bool(std::size_t node)>& is_in_set,
+                                            std::int32_t most) {
+  std::vector<std::int32_t> squared(box.size());
+  for (std::size_t node = 0; node < box.size(); ++node) squared[node] = is_in_set(node) ? 0 : kFarAway;
+  // In rows of `count` nodes that are `step` apart: the least of what others in it have and their own distance.
+  std::vector<std::int32_t> row;
+  const auto along = [&](std::size_t begin, std::size_t step, std::int32_t count) {
+    row.clear();
+    for (std::int32_t i = 0; i < count; ++i)
+      row.push_back(squared[begin + static_cast<std::size_t>(i) * step]);
+    if (std::ranges::min(row) == kFarAway) return;
+    for (std::int32_t i = 0; i < count; ++i) {
+      std::int32_t least = kFarAway;
+      for (std::int32_t j = std::max(0, i - most); j <= std::min(count - 1, i + most); ++j)
+        least = std::min(least, row[static_cast<std::size_t>(j)] + (i - j) * (i - j));
+      squared[begin + static_cast<std::size_t>(i) * step] = least;
+    }
+  };
+  for (std::int32_t k = 0; k < box.count_z; ++k)
+    for (std::int32_t j = 0; j < box.count_y; ++j) along(box.index(0, j, k), 1, box.count_x);
+  for (std::int32_t k = 0; k < box.count_z; ++k)
+    for (std::int32_t i = 0; i < box.count_x; ++i) along(box.index(i, 0, k), box.step_y(), box.count_y);
+  for (std::int32_t j = 0; j < box.count_y; ++j)
+    for (std::int32_t i = 0; i < box.count_x; ++i) along(box.index(i, j, 0), box.step_z(), box.count_z);
+  return squared;
+}
+
 }  // namespace aerate

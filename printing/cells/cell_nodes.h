@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/cells.h"
@@ -66,5 +67,13 @@ inline constexpr std::size_t kMostNodesOfCell = std::size_t{1} << 26;
 // kMostNodesOfCell.
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
                         const NodeLattice& lattice, SharedWork& work);
+
+// The square of the distance in spacings from each node to the nearest node of a set; kFarAway where the way is longer
+// than `most` along some axis. One axis after the other (P. Felzenszwalb and D. Huttenlocher, "Distance Transforms of
+// Sampled Functions", 2012), O(most) for each node.
+inline constexpr std::int32_t kFarAway = std::int32_t{1} << 29;
+std::vector<std::int32_t> squared_distances(const NodeBox& box,
+                                            const std::function<bool(std::size_t node)>& is_in_set,
+                                            std::int32_t most);
 
 }  // namespace aerate

@@ -363,37 +363,13 @@ class CellShaper {
     const double kept = packing_.limits.gap + 3 * lattice_.spacing;
     const double reach = kept + nodes.deepest;
     const auto steps = static_cast<std::int32_t>(reach / lattice_.spacing);
-    std::vector<float> allowed(box.size(), static_cast<float>(nodes.deepest));
-    for (std::int32_t k = 0; k < box.count_z; ++k) {
-      for (std::int32_t j = 0; j < box.count_y; ++j) {
-        for (std::int32_t i = 0; i < box.count_x; ++i) {
-          const std::size_t node = box.index(i, j, k);
-          if (labels[node] != piece) continue;
-          allowed[node] = -1;
-          if (is_surrounded(box, labels, node, piece)) continue;
-          for (std::int32_t z = std::max(0, k - steps); z <= std::min(box.count_z - 1, k + steps); ++z) {
-            for (std::int32_t y = std::max(0, j - steps); y <= std::min(box.count_y - 1, j + steps); ++y) {
-              for (std::int32_t x = std::max(0, i - steps); x <= std::min(box.count_x - 1, i + steps); ++x) {
-                const std::size_t other = box.index(x, y, z);
-                if (!nodes.has_ball(other)) continue;
-                const double apart = lattice_.spacing * std::hypot(x - i, y - j, z - k);
-                allowed[other] = std::min(allowed[other], static_cast<float>(apart - kept));
-              }
-            }
-          }
-        }
-      }
+    const std::vector<std::int32_t> squared = squared_distances(
+        box, [&](std::size_t node) { return labels[node] == piece; }, steps);
+    for (std::size_t node = 0; node < box.size(); ++node) {
+      if (squared[node] == kFarAway) continue;
+      const double apart = lattice_.spacing * std::sqrt(squared[node]);
+      limit(nodes, node, labels[node] == piece ? -1 : apart - kept);
     }
-    for (std::size_t node = 0; node < box.size(); ++node)
-      limit(nodes, node, static_cast<double>(allowed[node]));
-  }
-
-  static bool is_surrounded(const NodeBox& box, const std::vector<std::int32_t>& labels, std::size_t node,
-                            std::int32_t piece) {
-    for (const std::size_t step : {std::size_t{1}, box.step_y(), box.step_z()}) {
-      if (labels[node - step] != piece || labels[node + step] != piece) return false;
-    }
-    return true;
   }
 
   const SurfaceIndex& surface_;

@@ -154,6 +154,7 @@ Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
     const Vec3d along = hole.tube.end - hole.tube.start;
     holes.push_back({{"place_mm", json_of(hole.tube.end)},
                      {"outwards", json_of(normalised(along))},
+                     {"diameter_mm", 2 * hole.tube.radius},
                      {"network", hole.network}});
   }
   return {{"channel_diameter_mm", 2 * drainage.request.channel_radius},

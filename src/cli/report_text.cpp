@@ -142,9 +142,12 @@ void add_drainage(Lines& lines, const HollowReport& report) {
   if (!report.drainage) return;
   const DrainedVoids& drainage = *report.drainage;
   const DrainagePlan& plan = drainage.plan;
-  lines.add("drainage", "{} of {:g} mm, {} of {:g} mm; {} sealed",
+  const std::size_t narrow = drainage.count_narrow_holes();
+  lines.add("drainage", "{} of {:g} mm, {} of {:g} mm{}; {} sealed",
             count_of(plan.channels.size(), "channel", "channels"), 2 * drainage.request.channel_radius,
-            count_of(plan.holes.size(), "escape hole", "escape holes"), 2 * drainage.request.hole_radius,
+            count_of(plan.holes.size() - narrow, "escape hole", "escape holes"),
+            2 * drainage.request.hole_radius,
+            narrow > 0 ? fmt::format(", {} of {:g} mm", narrow, 2 * drainage.request.narrow_hole_radius) : "",
             count_of(report.output.drainage->sealed_cavities, "cavity", "cavities"));
   std::string places;
   for (const EscapeHole& hole : plan.holes) places += (places.empty() ? "" : ", ") + point(hole.tube.end);

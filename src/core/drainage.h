@@ -15,6 +15,8 @@ namespace aerate {
 struct DrainageRequest {
   double channel_radius = 0;  // of the channels between voids
   double hole_radius = 0;     // of the escape holes
+  // Where there is no place for these, cells get narrower ones; 0: they do not.
+  double narrow_hole_radius = 0;
   // Where escape holes are to open, near the surface. Fewer than two are supplemented.
   std::vector<Vec3d> escape_holes;
 };

@@ -58,8 +58,8 @@ CellVoids shape_soundly(const SurfaceIndex& surface, const Packing& packing, con
 }
 
 CarvedCells carve_at(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
-                     const CellPlanes& planes, const ProcessChoice& process, const HollowOptions& options,
-                     double tolerance, Monitor& monitor) {
+                     const CellPlanes& planes, const HollowOptions& options, double tolerance,
+                     Monitor& monitor) {
   const CellShape shape{options.cells->fillet, tolerance};
   require_memory_for_cells(model.mesh, packing, shape);
   CellVoids cells = shape_soundly(surface, packing, planes, shape, monitor);
@@ -72,7 +72,7 @@ CarvedCells carve_at(const PreparedModel& model, const SurfaceIndex& surface, co
     return {std::move(cells), std::nullopt, {std::move(solid), tolerance}};
   }
   DrainedCells drained =
-      drain_cells(model, surface, std::move(cells), packing.limits, process, options, tolerance, monitor);
+      drain_cells(model, surface, std::move(cells), packing.limits, options, tolerance, monitor);
   return {std::move(drained.cells), std::move(drained.voids), {std::move(drained.solid), tolerance}};
 }
 
@@ -95,7 +95,7 @@ bool may_be_too_coarse(const Error& error) {
 }  // namespace
 
 CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
-                           const ProcessChoice& process, const HollowOptions& options, Monitor& monitor) {
+                           const HollowOptions& options, Monitor& monitor) {
   constexpr double kLooser = 1.5;
   constexpr int kMostTries = 10;
   if (options.drainage) require_resolvable_tubes(model.mesh, *options.drainage, options.tolerance);
@@ -111,7 +111,7 @@ CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surfa
   for (int tries = 0; tries < kMostTries; ++tries, tolerance *= kLooser) {
     HeldNotices held(monitor);
     try {
-      CarvedCells made = carve_at(model, surface, packing, planes, process, options, tolerance, held);
+      CarvedCells made = carve_at(model, surface, packing, planes, options, tolerance, held);
       const std::size_t count = made.carved.solid.mesh.triangles.size();
       fewest = std::min(count, fewest.value_or(count));
       if (count > most) continue;

@@ -24,6 +24,6 @@ struct CarvedCells {
 // model's. Throws UsageError for more memory or triangles than there may be, and what shape_cells throws;
 // NothingToRemoveError if no cell is wide enough.
 CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
-                           const ProcessChoice& process, const HollowOptions& options, Monitor& monitor);
+                           const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate

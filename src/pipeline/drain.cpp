@@ -48,7 +48,8 @@ std::string reasons(const UndrainedVoids& dropped, const DrainageRequest& reques
 
 // What is worth trying, where many voids have no way out for the holes' width.
 std::string what_would_reach_them(const UndrainedVoids& dropped, const DrainageRequest& request) {
-  const bool may_be_narrower = request.hole_radius > request.channel_radius;
+  const bool may_be_narrower =
+      request.hole_radius > request.channel_radius && request.narrow_hole_radius == 0;
   if (!may_be_narrower || 2 * dropped.unopened < dropped.count() || request.escape_holes.size() >= 2)
     return {};
   return fmt::format("; narrower holes may find more places (--hole-diameter between {:g} and {:g} mm)",
@@ -61,6 +62,12 @@ void tell_what_was_dropped(const DrainedVoids& drainage, std::size_t packed, Mon
     monitor.notice(fmt::format("{} of {} voids ({:.1f} mm3) cannot be drained and are not made: {}{}",
                                dropped.count(), packed, dropped.volume, reasons(dropped, drainage.request),
                                what_would_reach_them(dropped, drainage.request)));
+  if (const std::size_t narrow = drainage.count_narrow_holes(); narrow > 0)
+    monitor.notice(
+        fmt::format("{} of {} escape holes are {:g} mm wide, as channels are: there is no place for {:g} mm "
+                    "(--hole-diameter {:g} leaves out what these do not reach)",
+                    narrow, drainage.plan.holes.size(), 2 * drainage.request.narrow_hole_radius,
+                    2 * drainage.request.hole_radius, 2 * drainage.request.hole_radius));
   const TrappedPools& pools = drainage.plan.pools;
   if (pools.after_both > kPoolsAimedAt * pools.total)
     monitor.notice(fmt::format(
@@ -132,6 +139,11 @@ void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const Dra
 
 }  // namespace
 
+std::size_t DrainedVoids::count_narrow_holes() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      plan.holes, [&](const EscapeHole& hole) { return hole.tube.radius < request.hole_radius; }));
+}
+
 DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Packing packing,
                      const ProcessChoice& process, const HollowOptions& options, Monitor& monitor) {
   if (!options.drainage) return {std::move(packing), std::nullopt, {}};
@@ -167,16 +179,16 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
 }
 
 DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
-                         const PackingLimits& limits, const ProcessChoice& process,
-                         const HollowOptions& options, double tolerance, Monitor& monitor) {
+                         const PackingLimits& limits, const HollowOptions& options, double tolerance,
+                         Monitor& monitor) {
   monitor.stage("drain");
   const DrainageRequest& request = *options.drainage;
-  warn_of_wide_tubes(process, limits.roof, request, monitor);
   require_resolvable_tubes(model.mesh, request, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
   std::vector<Tube> refused;
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
-    return !is_among(refused, tube) && may_be_cut(model.mesh, surface, cells.voids[from], tube, tolerance) &&
+    return !is_among(refused, tube) &&
+           may_be_cut(model.mesh, surface, cells.voids[from], tube, limits.roof, tolerance) &&
            !is_crossed_near(model.mesh, surface, tube);
   };
   const auto can_open_wall = [&](const Tube& window) { return !is_among(refused, window); };

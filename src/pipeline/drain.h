@@ -21,6 +21,9 @@ struct DrainedVoids {
   DrainageRequest request;
   DrainagePlan plan;       // channels, holes, pools
   UndrainedVoids dropped;  // voids that were packed and not made
+
+  // Of the holes, those for which there was no place of the usual width.
+  std::size_t count_narrow_holes() const;
 };
 
 // The voids that are made. If they drain: how, and the model's surface with the holes cut.
@@ -46,8 +49,8 @@ struct DrainedCells {
 // The same for cells, which are joined by windows in the walls between them; carved as well, since that tells
 // whether a tube can be cut. Throws what plan_cell_drainage throws.
 DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
-                         const PackingLimits& limits, const ProcessChoice& process,
-                         const HollowOptions& options, double tolerance, Monitor& monitor);
+                         const PackingLimits& limits, const HollowOptions& options, double tolerance,
+                         Monitor& monitor);
 
 // Throws UsageError unless fp32 can hold the sides of tubes anywhere in the model.
 void require_resolvable_tubes(const Mesh& model, const DrainageRequest& request, double tolerance);

@@ -163,8 +163,7 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
   auto [packing, surface] = pack_model(model, request, monitor);
   if (options.cells) {
     packing.limits = request.limits();
-    auto [cells, drainage, carved] =
-        carve_as_cells(model, surface, packing, request.process, options, monitor);
+    auto [cells, drainage, carved] = carve_as_cells(model, surface, packing, options, monitor);
     warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
     return {std::move(request), std::move(model),    std::move(surface), std::move(packing),
             std::move(cells),   std::move(drainage), std::move(carved)};

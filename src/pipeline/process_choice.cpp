@@ -171,8 +171,13 @@ PackingLimits packing_limits(const ProcessChoice& choice) {
 }
 
 DrainageRequest drainage_request(const ProcessChoice& choice, std::vector<Vec3d> escape_holes) {
-  return {.channel_radius = choice.limits.at(Limit::channel).value / 2,
-          .hole_radius = choice.limits.at(Limit::escape_hole).value / 2,
+  const double channel = choice.limits.at(Limit::channel).value;
+  const LimitValue& hole = choice.limits.at(Limit::escape_hole);
+  // What leaves by a hole came through channels, so one as wide as these will do where the usual width does not fit.
+  const bool may_be_narrower = hole.origin == default_of(choice.process) && hole.value > channel;
+  return {.channel_radius = channel / 2,
+          .hole_radius = hole.value / 2,
+          .narrow_hole_radius = may_be_narrower ? channel / 2 : 0,
           .escape_holes = std::move(escape_holes)};
 }
 

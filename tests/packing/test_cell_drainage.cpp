@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/overhang.h"
 #include "packing/cells/cell_drainage.h"
 #include "packing/cells/cell_windows.h"
 #include "tests/packing/cell_boxes.h"
@@ -99,6 +100,35 @@ TEST(CellDrainage, AVoidWithoutAFaceForAWindowIsLeftOutAsNarrow) {
   EXPECT_EQ(planned.dropped.narrow, 1U);
   EXPECT_EQ(planned.dropped.count(), 1U);
   EXPECT_NEAR(planned.dropped.volume, 3.5 * 20 * 3.2, 1e-3);
+}
+
+// Holes of 6 mm find no place in a void of 5 mm.
+TEST(CellDrainage, WhereNoHoleOfTheUsualWidthFitsNarrowerOnesAreMade) {
+  std::vector<Box> boxes = equal_boxes(1, 5);
+  boxes[0].upper = {7, 7, 7};
+  const Mesh model = block_round(boxes);
+  const CellVoids cells = row_of(boxes);
+  DrainageRequest request = request_of();
+  request.hole_radius = 3;
+  EXPECT_THROW(plan(model, cells, request, limits_of()), NothingToRemoveError);
+  request.narrow_hole_radius = 1.5;
+  const PlannedCellDrainage planned = plan(model, cells, request, limits_of());
+  ASSERT_EQ(planned.plan.holes.size(), 2U);
+  for (const EscapeHole& hole : planned.plan.holes) EXPECT_EQ(hole.tube.radius, 1.5);
+}
+
+// A level tube of any width has a top that the printer bridges.
+TEST(CellDrainage, WhereCeilingsAreLimitedWideHolesMayLeadOutSideways) {
+  const std::vector<Box> boxes = equal_boxes(1, 30);
+  const Mesh model = block_round(boxes);
+  PackingLimits limits = limits_of();
+  limits.roof = make_roof({.degrees = 45, .bridge = 1, .up = {0, 0, 1}});
+  const CanOpenCell only_level = [](const Tube& tube, std::uint32_t) {
+    return std::abs(direction_of(tube).z) < 0.1;
+  };
+  const PlannedCellDrainage planned = plan(model, row_of(boxes), request_of(), limits, only_level);
+  ASSERT_EQ(planned.plan.holes.size(), 2U);
+  for (const EscapeHole& hole : planned.plan.holes) EXPECT_FALSE(is_bridged(hole.tube, limits.roof));
 }
 
 TEST(CellDrainage, OneVoidAloneIsOpenedBelowAndAbove) {

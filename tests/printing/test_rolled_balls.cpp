@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <vector>
 
@@ -59,6 +61,36 @@ TEST(RolledBalls, WhatIsBesideADiagonalStays) {
   // (5, 3, 3) hangs together with (5, 4, 3) alone, which meets (4, 5, 3) diagonally.
   const NodeBox box = solid_nodes(1).box;
   EXPECT_EQ(void_of({{5, 3, 3}, {5, 4, 3}, {4, 5, 3}}), std::vector<std::size_t>{box.index(5, 3, 3)});
+}
+
+TEST(CellNodes, SquaredDistancesAreThoseToTheNearestNodeOfTheSet) {
+  NodeBox box;
+  box.count_x = 9;
+  box.count_y = 7;
+  box.count_z = 8;
+  const std::vector<std::array<std::int32_t, 3>> set{{1, 2, 3}, {7, 5, 6}, {8, 0, 0}};
+  constexpr std::int32_t kMost = 4;
+  const std::vector<std::int32_t> squared = squared_distances(
+      box,
+      [&](std::size_t node) {
+        return std::ranges::any_of(set, [&](const auto& p) { return box.index(p[0], p[1], p[2]) == node; });
+      },
+      kMost);
+  int near = 0;
+  for (std::int32_t k = 0; k < box.count_z; ++k) {
+    for (std::int32_t j = 0; j < box.count_y; ++j) {
+      for (std::int32_t i = 0; i < box.count_x; ++i) {
+        std::int32_t least = kFarAway;
+        for (const auto& [x, y, z] : set) {
+          if (std::max({std::abs(x - i), std::abs(y - j), std::abs(z - k)}) <= kMost)
+            least = std::min(least, (x - i) * (x - i) + (y - j) * (y - j) + (z - k) * (z - k));
+        }
+        EXPECT_EQ(squared[box.index(i, j, k)], least) << i << ' ' << j << ' ' << k;
+        near += least < kFarAway ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(near, 100);
 }
 
 }  // namespace aerate

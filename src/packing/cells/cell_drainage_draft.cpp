@@ -59,8 +59,9 @@ CellDrainageTask::CellDrainageTask(const DrainableModel& model, const CellVoids&
       hollows(hollows_of(voids, kept.roof.up, watched)),
       pools(hollows),
       surfaces(model.surface, voids, kept, 2 * longest_hole(asked, kept)),
-      windows(find_cell_windows(voids, hollows, kept, asked.channel_radius, surfaces, watched)),
-      places(voids, hollows, kept, asked.hole_radius, surfaces, model.outward) {
+      windows(find_cell_windows(voids, hollows, kept, asked.channel_radius, surfaces, watched)) {
+  for (const double radius : {asked.hole_radius, asked.narrow_hole_radius})
+    if (radius > 0) places.emplace_back(voids, hollows, kept, radius, surfaces, model.outward);
   for (const VoidHollows& one : hollows) volume += one.volume();
 }
 
@@ -145,7 +146,8 @@ bool can_place(CellDrainageTask& task, const CellDraft& draft, const CellHole& h
   if (!keeps_clear(task, draft, escape.tube, escape.from, escape.from)) return false;
   const bool is_beside_uncut =
       std::any_of(task.uncut.begin(), task.uncut.end(), [&](const EscapeHole& uncut) {
-        return uncut.from == escape.from && length(uncut.tube.end - escape.tube.end) < escape.tube.radius;
+        return uncut.from == escape.from && escape.tube.radius >= uncut.tube.radius &&
+               length(uncut.tube.end - escape.tube.end) < escape.tube.radius;
       });
   if (is_beside_uncut) return false;
   if (task.can_open(escape.tube, escape.from)) return true;
@@ -155,16 +157,18 @@ bool can_place(CellDrainageTask& task, const CellDraft& draft, const CellHole& h
 
 bool open_hollows(CellDrainageTask& task, CellDraft& draft, std::span<const Basin::Part> hollows,
                   std::size_t orientation) {
-  for (const double share : kSharesOfHeight) {
-    const std::size_t known = task.uncut.size();
-    bool is_given_up = false;
-    auto hole = task.places.best(hollows, orientation, share, [&](const CellHole& candidate) {
-      is_given_up = task.uncut.size() >= known + kMostCuts;
-      return is_given_up || can_place(task, draft, candidate);
-    });
-    if (!hole || is_given_up) continue;
-    draft.holes.push_back(std::make_shared<const CellHole>(std::move(*hole)));
-    return true;
+  for (CellHolePlaces& places : task.places) {
+    for (const double share : kSharesOfHeight) {
+      const std::size_t known = task.uncut.size();
+      bool is_given_up = false;
+      auto hole = places.best(hollows, orientation, share, [&](const CellHole& candidate) {
+        is_given_up = task.uncut.size() >= known + kMostCuts;
+        return is_given_up || can_place(task, draft, candidate);
+      });
+      if (!hole || is_given_up) continue;
+      draft.holes.push_back(std::make_shared<const CellHole>(std::move(*hole)));
+      return true;
+    }
   }
   return false;
 }

@@ -33,7 +33,8 @@ struct CellDrainageTask {
   CellPools pools;
   CellSurfaces surfaces;
   std::vector<CellWindow> windows;  // all places for windows
-  CellHolePlaces places;
+  std::vector<CellHolePlaces>
+      places;                     // for holes of the usual width, then for narrower ones if there are any
   std::vector<EscapeHole> uncut;  // that could not be cut: nothing is tried again as near as a radius
 
   std::size_t void_count() const { return hollows.size(); }

@@ -173,8 +173,13 @@ CellDraft open_where_asked(CellDrainageTask& task, CellDraft draft) {
   }
   const auto hole_at = [&](Vec3d place) {
     task.monitor.check_interrupted();
-    return task.places.leading_to(
-        place, all, [&](const CellHole& candidate) { return can_place(task, draft, candidate); });
+    std::optional<CellHole> hole;
+    for (const CellHolePlaces& places : task.places) {
+      if (hole) break;
+      hole = places.leading_to(place, all,
+                               [&](const CellHole& candidate) { return can_place(task, draft, candidate); });
+    }
+    return hole;
   };
   for (const Vec3d place : task.request.escape_holes) {
     auto hole = hole_at(place);

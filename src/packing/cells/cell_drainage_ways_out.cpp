@@ -53,7 +53,6 @@ std::optional<CellWayOut> WaysOut::follow(std::uint32_t from, Vec3d inside, Vec3
   if (!reached) return std::nullopt;
   CellWayOut way{.hole = {from, {inside, inside + direction * *reached, radius_}, 0}, .reached = *reached};
   Tube& tube = way.hole.tube;
-  if (!is_bridged(tube, limits_.roof)) return std::nullopt;
   if (dot(surfaces_.model().normal_near(tube.end), direction) < kLeastSlope) return std::nullopt;
   if (!leave_void(tube, way) || way.last + kClearance > way.reached || way.length() > longest_)
     return std::nullopt;

@@ -98,7 +98,6 @@ class WindowFinder {
 
   bool is_sound(const CellWindow& window) const {
     const Tube tube{window.wall.start, window.wall.end, radius_};
-    if (!is_bridged(tube, limits_.roof)) return false;
     const Vec3d along = tube.end - tube.start;
     for (const Vec3d start : lines_round(tube.start, tube, limits_.roof.up)) {
       if (!surfaces_.model().keeps_wall({start, start + along, 0})) return false;
