@@ -90,4 +90,11 @@ double tolerance_for(const Packing& packing, double asked, std::size_t outer_tri
   return *loosened;
 }
 
+void notice_if_loosened(double tolerance, double asked, std::optional<std::size_t> max_triangles,
+                        Monitor& monitor) {
+  if (!max_triangles || tolerance <= asked) return;
+  monitor.notice(fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
+                             tolerance, asked, *max_triangles));
+}
+
 }  // namespace aerate

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/mesh.h"
+#include "core/monitor.h"
 #include "core/packing.h"
 #include "mesh/inspect.h"
 #include "pipeline/options.h"
@@ -27,5 +28,9 @@ void require_memory_for_cells(const Mesh& mesh, const Packing& packing, const Ce
 // Throws UsageError if none does. mm.
 double tolerance_for(const Packing& packing, double asked, std::size_t outer_triangles,
                      std::optional<std::size_t> max_triangles);
+
+// Notes that a tolerance is not the one that was asked for, if so. mm.
+void notice_if_loosened(double tolerance, double asked, std::optional<std::size_t> max_triangles,
+                        Monitor& monitor);
 
 }  // namespace aerate

@@ -116,10 +116,7 @@ CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surfa
       fewest = std::min(count, fewest.value_or(count));
       if (count > most) continue;
       held.pass_on();
-      if (tolerance > options.tolerance)
-        monitor.notice(
-            fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
-                        tolerance, options.tolerance, most));
+      notice_if_loosened(tolerance, options.tolerance, options.max_triangles, monitor);
       return made;
     } catch (const Error& error) {
       if (fewest && may_be_too_coarse(error)) break;

@@ -36,9 +36,7 @@ PackingRequest request_of(const HollowOptions& options, Monitor& monitor) {
 double tolerance_within(const Packing& packing, std::size_t outer_triangles, const HollowOptions& options,
                         Monitor& monitor) {
   const double tolerance = tolerance_for(packing, options.tolerance, outer_triangles, options.max_triangles);
-  if (tolerance > options.tolerance)
-    monitor.notice(fmt::format("the tolerance is {:.3g} mm instead of {:.3g} mm to stay within {} triangles",
-                               tolerance, options.tolerance, *options.max_triangles));
+  notice_if_loosened(tolerance, options.tolerance, options.max_triangles, monitor);
   require_memory_for_voids(packing, tolerance, outer_triangles);
   return tolerance;
 }
