@@ -28,6 +28,14 @@ Ceilings measure_ceilings(const Mesh& mesh, std::span<const SolidPart> parts, co
   return {ceilings.size(), widest};
 }
 
+std::optional<Ceilings> limited_ceilings(const Mesh& mesh, std::span<const SolidPart> parts, const Roof& roof,
+                                         double tolerance, Monitor& monitor) {
+  if (!roof.limits_ceilings()) return std::nullopt;
+  const Ceilings ceilings = measure_ceilings(mesh, parts, roof, monitor);
+  require_bridged(ceilings, roof, tolerance);
+  return ceilings;
+}
+
 void require_bridged(const Ceilings& ceilings, const Roof& roof, double tolerance) {
   if (ceilings.widest > roof.bridge() + tolerance)
     fail_check("a ceiling is {:.4g} mm wide, the bridge {:.4g} mm and the tolerance {:.4g} mm",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "core/mesh.h"
@@ -21,6 +22,10 @@ struct Ceilings {
 // threads; the same for any number of them. Throws InterruptedError.
 Ceilings measure_ceilings(const Mesh& mesh, std::span<const SolidPart> parts, const Roof& roof,
                           Monitor& monitor);
+
+// The same, each bridged, where there is a limit for ceilings; else nothing. Throws also what require_bridged throws.
+std::optional<Ceilings> limited_ceilings(const Mesh& mesh, std::span<const SolidPart> parts, const Roof& roof,
+                                         double tolerance, Monitor& monitor);
 
 // Throws FailureError if a ceiling is wider than the bridge by more than `tolerance` mm.
 void require_bridged(const Ceilings& ceilings, const Roof& roof, double tolerance);

@@ -85,16 +85,11 @@ Clearances measure_limits(const std::vector<Sphere>& balls, const Expected& expe
 // Of voids, and of channels and holes, which are one surface with theirs.
 std::optional<Ceilings> measure_limited_ceilings(const Mesh& read_back, const Expected& expected,
                                                  Monitor& monitor) {
-  const Roof& roof = expected.packing.limits.roof;
-  if (!roof.limits_ceilings()) return std::nullopt;
   const std::size_t first = expected.solid.outer_triangle_count();
   const SolidPart all{PartKind::void_surface, first, read_back.triangles.size() - first};
-  const Ceilings ceilings = measure_ceilings(
-      read_back,
-      expected.drainage != nullptr ? std::span(&all, 1) : expected.solid.of(PartKind::void_surface), roof,
-      monitor);
-  require_bridged(ceilings, roof, expected.tolerance);
-  return ceilings;
+  const auto parts =
+      expected.drainage != nullptr ? std::span(&all, 1) : expected.solid.of(PartKind::void_surface);
+  return limited_ceilings(read_back, parts, expected.packing.limits.roof, expected.tolerance, monitor);
 }
 
 // What is left of a model, and what was taken out of it.

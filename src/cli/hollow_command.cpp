@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/cell_options.h"
 #include "cli/commands.h"
 #include "cli/drainage_options.h"
 #include "cli/model_options.h"
@@ -44,11 +45,29 @@ std::string packings_on_a_lattice() {
   return listed(names, "or");
 }
 
+// Whether voids are cells, if that was not said.
+bool makes_cells(const Process& process) {
+  return process.drainage == Drainage::needed && !process.limits.contains(Limit::bridge);
+}
+
+CellWords words_of_cells() {
+  return {
+      .shape =
+          "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
+          "thick as --gap and take nearly all that is deeper than --wall (default cells where voids drain "
+          "and ceilings are not limited, which is " +
+          processes_that(makes_cells) + ", unless there is --packing " + packings_on_a_lattice() +
+          ", --spheres or --target-density; else spheres)",
+      .fillet = "the channels' radius, else 1",
+      .tolerance = "Void surfaces stay this far inside their shapes at most (default 0.05, of cells 0.1)"};
+}
+
 struct HollowCommand {
   HollowCommand(CLI::App& command, const ConfigFile& config)
       : model(command),
         packing(command, config),
         drainage(command, config),
+        cells(command, words_of_cells()),
         print(command),
         run_options(command) {
     command.add_option("-o,--output", output, "The result: " + endings_that_are_written() + " (required)")
@@ -71,33 +90,6 @@ struct HollowCommand {
             "--spheres", spheres,
             "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
         ->type_name("FILE");
-    command
-        .add_option(
-            "--shape", shape,
-            "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
-            "thick as --gap and take nearly all that is deeper than --wall (default cells where voids drain "
-            "and ceilings are not limited, which is " +
-                processes_that(makes_cells) + ", unless there is --packing " + packings_on_a_lattice() +
-                ", --spheres or --target-density; else spheres)")
-        ->check(CLI::IsMember({"spheres", "cells"}))
-        ->type_name("SHAPE");
-    command
-        .add_option("--cell-size", cell_size,
-                    "Cells: about how far inner walls are apart (default 21, or what --max-radius gives)")
-        ->check(number_between({}, kLongest, "mm"))
-        ->type_name("MM");
-    command
-        .add_option(
-            "--fillet", fillet,
-            "Cells: radius of their inner edges; what is narrower than a ball of it stays solid (default "
-            "the channels' radius, else 1)")
-        ->check(number_between({}, kLongest, "mm"))
-        ->type_name("MM");
-    command
-        .add_option("--tolerance", tolerance,
-                    "Void surfaces stay this far inside their shapes at most (default 0.05, of cells 0.1)")
-        ->check(number_between({}, kLongest, "mm"))
-        ->type_name("MM");
     command
         .add_option("--max-triangles", max_triangles,
                     "Loosen the tolerance until the result has at most so many triangles")
@@ -152,11 +144,12 @@ struct HollowCommand {
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
     if (!options.modifiers) options = drainage.applied_to(std::move(options));
-    if (is_cells(options)) options = with_cells(std::move(options));
-    if (!options.cells && fillet) throw UsageError("--fillet without --shape cells", "spheres have no edges");
-    if (!options.cells && cell_size)
-      throw UsageError("--cell-size without --shape cells", "--max-radius says how large spheres are");
-    options.tolerance = tolerance.value_or(options.cells ? kCellTolerance : HollowOptions{}.tolerance);
+    ShapedRequest shaped =
+        cells.applied_to(options.packing, cells.asks_for_cells().value_or(is_cells_unasked(options)),
+                         options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet);
+    options.packing = std::move(shaped.packing);
+    options.cells = shaped.cells;
+    options.tolerance = shaped.tolerance.value_or(options.tolerance);
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
@@ -168,27 +161,14 @@ struct HollowCommand {
     return options;
   }
 
-  // Whether voids are cells, if that was not said.
-  static bool makes_cells(const Process& process) {
-    return process.drainage == Drainage::needed && !process.limits.contains(Limit::bridge);
-  }
-
-  bool is_cells(const HollowOptions& options) const {
-    if (!shape.empty()) return shape == "cells";
+  // Whether voids are cells, if --shape does not say.
+  static bool is_cells_unasked(const HollowOptions& options) {
     const PackingRequest& request = options.packing;
     if (request.method->on_lattice || !request.spheres.empty() || request.stop.target_density < 1)
       return false;
     const PackingLimits limits = request.limits();
     return !options.modifiers && request.process.process.drainage == Drainage::needed &&
            !limits.roof.shapes(limits.max_radius);
-  }
-
-  HollowOptions with_cells(HollowOptions options) const {
-    options.packing.process = sized_for_cells(std::move(options.packing.process), cell_size);
-    options.packing.is_for_cells = true;
-    options.cells = {
-        fillet.value_or(options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet)};
-    return options;
   }
 
   void run() const {
@@ -201,6 +181,7 @@ struct HollowCommand {
   ModelOptions model;
   PackingCommandOptions packing;
   DrainageOptions drainage;
+  CellCommandOptions cells;
   PrintOptions print;
   RunOptions run_options;
   std::string output;
@@ -208,10 +189,6 @@ struct HollowCommand {
   std::string flavor = of_slicers(flavor_of).front();
   double modifier_infill = ModifierOptions{}.infill_percent;
   std::string spheres;
-  std::string shape;
-  std::optional<double> cell_size;
-  std::optional<double> fillet;
-  std::optional<double> tolerance;
   std::optional<double> max_triangles;
   std::string surface = "auto";
   std::optional<double> voxel_size;

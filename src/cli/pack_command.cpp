@@ -1,38 +1,75 @@
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "cli/cell_options.h"
 #include "cli/commands.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
+#include "cli/void_options.h"
+#include "files/cell_table.h"
+#include "files/formats.h"
 #include "pipeline/pack.h"
 
 namespace aerate::cli {
 namespace {
 
+CellWords words_of_cells() {
+  return {
+      .shape =
+          "What is written: the packed spheres, or the cells round them, as 'aerate hollow --shape cells' "
+          "takes them out where voids are sealed (default spheres)",
+      .fillet = fmt::format("{:g}", CellOptions{}.fillet),
+      .tolerance = fmt::format("Cells: surfaces of their pieces stay this far inside their shapes at most "
+                               "(default {:g})",
+                               kCellTolerance)};
+}
+
 struct PackCommand {
   PackCommand(CLI::App& command, const ConfigFile& config)
-      : model(command), packing(command, config), run_options(command) {
+      : model(command), packing(command, config), cells(command, words_of_cells()), run_options(command) {
     command
         .add_option("-o,--output", output,
-                    "The spheres: .csv (a line x,y,z,radius,kind each), .json or .ply (required)")
+                    "Spheres: a table, .csv (a line x,y,z,radius,kind each), .json or .ply. Cells: their "
+                    "planes, .csv or .json, or their pieces as closed shells, " +
+                        endings_that_are_written() + " (required)")
         ->required()
         ->type_name("FILE");
   }
 
-  void run() const {
+  PackOptions to_pipeline() const {
     PackOptions options;
     options.model = model.path;
     options.output = output;
     options.load = model.load();
     options.weld = model.weld;
-    options.packing = packing.request();
+    ShapedRequest shaped =
+        cells.applied_to(packing.request(), cells.asks_for_cells().value_or(false), CellOptions{}.fillet);
+    options.packing = std::move(shaped.packing);
+    options.cells = shaped.cells;
+    options.tolerance = shaped.tolerance.value_or(options.tolerance);
+    if (!options.cells)
+      cells.require_neither_fillet_nor_tolerance("without --shape cells", "spheres are written as they are");
+    else if (find_cell_table_format(options.output))
+      cells.require_neither_fillet_nor_tolerance(
+          "with " + options.output.string(),
+          fmt::format("planes are exact and have no edges; a name that ends in {} is for pieces, which have",
+                      endings_that_are_written()));
+    if (options.cells) require_tolerance_for(options.packing.limits(), options.tolerance);
+    return options;
+  }
+
+  void run() const {
+    const PackOptions options = to_pipeline();
     JobFiles files{packing.inputs(model.path), {options.output}};
     run_reported(run_options, files, [&](Monitor& monitor) { return pack(options, monitor); });
   }
 
   ModelOptions model;
   PackingCommandOptions packing;
+  CellCommandOptions cells;
   RunOptions run_options;
   std::string output;
 };
@@ -40,7 +77,8 @@ struct PackCommand {
 }  // namespace
 
 void add_pack_command(CLI::App& app, const ConfigFile& config) {
-  CLI::App& command = *app.add_subcommand("pack", "Pack spheres in a closed model and write them as a table");
+  CLI::App& command =
+      *app.add_subcommand("pack", "Pack spheres in a closed model and write them or their cells");
   command.callback([job = std::make_shared<PackCommand>(command, config)] { job->run(); });
 }
 

@@ -91,6 +91,30 @@ Json json_of(const Clearances& clearances) {
   return {{"wall_mm", clearances.wall}, {"gap_mm", or_null(clearances.gap)}};
 }
 
+Json json_of(const std::optional<Ceilings>& ceilings, std::size_t roof_count, const PackingLimits& limits) {
+  if (!ceilings) return nullptr;
+  return {{"roofs", roof_count},
+          {"count", ceilings->count},
+          {"flatter_than_degrees", overhang_degrees(limits.roof) + kCeilingMarginDegrees},
+          {"widest_mm", ceilings->widest}};
+}
+
+Json json_of(const PackedCells& cells, const PackReport& report) {
+  Json json{{"count", report.packing.spheres.size()}, {"planes", cells.plane_count}, {"pieces", nullptr}};
+  if (!cells.pieces) return json;
+  const PieceFacts& pieces = *cells.pieces;
+  json["pieces"] = {{"count", pieces.piece_count},
+                    {"volume_mm3", pieces.volume},
+                    {"volume_percent", 100 * pieces.volume / report.input.inspection.filled_volume},
+                    {"triangles", pieces.triangle_count},
+                    {"fillet_mm", cells.options.fillet},
+                    {"tolerance_mm", cells.tolerance},
+                    {"deviation_mm", pieces.deviation},
+                    {"measured", json_of(pieces.clearances)},
+                    {"ceilings", json_of(pieces.ceilings, pieces.roof_count, report.limits)}};
+  return json;
+}
+
 // What voids would remove they do not as modifiers: null there, and what is known under "modifiers".
 Json material_of(const HollowReport& report) {
   if (report.modifiers) return nullptr;
@@ -235,15 +259,7 @@ std::string to_json(const HollowReport& report) {
                    {"tolerance_used_mm", report.tolerance_used},
                    {"deviation_mm", output.void_deviation}};
   json["measured"] = json_of(output.clearances);
-  if (output.ceilings) {
-    json["ceilings"] = {
-        {"roofs", output.roof_count},
-        {"count", output.ceilings->count},
-        {"flatter_than_degrees", overhang_degrees(report.limits.roof) + kCeilingMarginDegrees},
-        {"widest_mm", output.ceilings->widest}};
-  } else {
-    json["ceilings"] = nullptr;
-  }
+  json["ceilings"] = json_of(output.ceilings, output.roof_count, report.limits);
   json["drainage"] = report.drainage ? json_of(*report.drainage, *output.drainage) : Json(nullptr);
   json["volume"] = volume_of(report);
   json["modifiers"] = modifiers_of(report);
@@ -264,11 +280,12 @@ std::string to_json(const PackReport& report) {
   Json json = report_header("pack");
   json["input"] = json_of(report.input);
   json["process"] = json_of(report.process);
-  json["limits"] = json_of(report.packing.limits);
+  json["limits"] = json_of(report.limits);
   json["packing"] = json_of(report.method, report.packing.device, report.density, report.packing.statistics);
   json["packing"]["spheres"] = report.packing.spheres.size();
   json["measured"] = report.clearances ? json_of(*report.clearances) : Json(nullptr);
-  json["output"] = {{"path", report.output.string()}};
+  json["cells"] = report.cells ? json_of(*report.cells, report) : Json(nullptr);
+  json["output"] = {{"path", report.output.string()}, {"bytes", report.output_bytes}};
   add_closing(json, report.stages, report.notices);
   return dump(json);
 }

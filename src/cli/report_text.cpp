@@ -80,16 +80,13 @@ void add_limits(Lines& lines, const ProcessChoice& choice) {
   for (const auto& [origin, values] : values_by_origin) lines.add("", "{} ({})", values, origin);
 }
 
-void add_ceilings(Lines& lines, const HollowReport& report) {
-  const OutputFacts& output = report.output;
-  if (!output.ceilings) return;
-  const Roof& roof = report.limits.roof;
-  lines.add("ceilings",
-            "{:.2f} mm wide at most (bridge {:g}, tolerance {:.3g}); {} of {} with roofs; up "
-            "is {} ({})",
-            output.ceilings->widest, roof.bridge(), report.tolerance_used, grouped(output.roof_count),
-            count_of(output.void_count, "void", "voids"), report.process.direction.name,
-            report.process.direction.origin);
+// `roofs`: "2 of 7 voids"
+void add_ceilings(Lines& lines, const std::optional<Ceilings>& ceilings, const std::string& roofs,
+                  const Roof& roof, double tolerance, const ProcessChoice& process) {
+  if (!ceilings) return;
+  lines.add(
+      "ceilings", "{:.2f} mm wide at most (bridge {:g}, tolerance {:.3g}); {} with roofs; up is {} ({})",
+      ceilings->widest, roof.bridge(), tolerance, roofs, process.direction.name, process.direction.origin);
 }
 
 // "0.620 to 3.500 mm"
@@ -235,6 +232,33 @@ void add_material(Lines& lines, const HollowReport& report) {
   add_print(lines, report);
 }
 
+// Of the model: what the pieces of cells take.
+void add_pieces(Lines& lines, const PackReport& report) {
+  const PackedCells& cells = *report.cells;
+  const PieceFacts& pieces = *cells.pieces;
+  const std::string count = count_of(pieces.piece_count, "piece", "pieces");
+  lines.add("pieces", "{}, {:.1f} mm3 ({:.2f} % of the model), fillet {:g} mm", count, pieces.volume,
+            100 * pieces.volume / report.input.inspection.filled_volume, cells.options.fillet);
+  add_clearances(lines, pieces.clearances, report.limits);
+  add_ceilings(lines, pieces.ceilings, fmt::format("{} of {}", grouped(pieces.roof_count), count),
+               report.limits.roof, cells.tolerance, report.process);
+  lines.add("tolerance", "{:.3g} mm; surfaces of pieces are at most {:.3g} mm inside their cells",
+            cells.tolerance, pieces.deviation);
+}
+
+// What was written.
+std::string output_of(const PackReport& report) {
+  const std::string size = format_bytes(static_cast<double>(report.output_bytes));
+  const std::string file = report.output.filename().string();
+  if (!report.cells) return fmt::format("{}: {}", file, size);
+  const std::size_t planes = report.cells->plane_count;
+  return report.cells->pieces
+             ? fmt::format("{}: {}, {}", file,
+                           count_of(report.cells->pieces->triangle_count, "triangle", "triangles"), size)
+             : fmt::format("{}: {} of {}, {}", file, count_of(planes, "plane", "planes"),
+                           count_of(report.packing.spheres.size(), "cell", "cells"), size);
+}
+
 // A line for each of the first few.
 template <typename T, typename AddLine>
 void add_some(Lines& lines, const std::vector<T>& all, const AddLine& add_line) {
@@ -257,7 +281,10 @@ std::string to_text(const HollowReport& report) {
               report.packing_device);
   add_volume(lines, report);
   add_clearances(lines, output.clearances, report.limits);
-  add_ceilings(lines, report);
+  add_ceilings(
+      lines, output.ceilings,
+      fmt::format("{} of {}", grouped(output.roof_count), count_of(output.void_count, "void", "voids")),
+      report.limits.roof, report.tolerance_used, report.process);
   add_drainage(lines, report);
   if (!report.modifiers) add_balance(lines, report);
   add_material(lines, report);
@@ -287,7 +314,9 @@ std::string to_text(const PackReport& report) {
   add_limits(lines, report.process);
   add_packing(lines, "spheres", count_of(spheres.size(), "sphere", "spheres"),
               radii(smallest->radius, largest->radius), report.method, report.density, report.packing.device);
-  if (report.clearances) add_clearances(lines, *report.clearances, report.packing.limits);
+  // Of pieces, which are what is written then, below.
+  const bool has_pieces = report.cells && report.cells->pieces;
+  if (report.clearances && !has_pieces) add_clearances(lines, *report.clearances, report.packing.limits);
   const PackingStatistics& statistics = report.packing.statistics;
   lines.add("places",
             "{} tried; {} outside, {} near the surface, {} below the smallest radius, {} where parts "
@@ -295,7 +324,8 @@ std::string to_text(const PackReport& report) {
             grouped(statistics.candidates), grouped(statistics.outside), grouped(statistics.near_surface),
             grouped(statistics.below_min_radius), grouped(statistics.overlapped_region),
             grouped(statistics.dropped_by_verification));
-  lines.add("output", "{}", report.output.filename().string());
+  if (has_pieces) add_pieces(lines, report);
+  lines.add("output", "{}", output_of(report));
   add_stages(lines, report.stages);
   return lines.take();
 }

@@ -50,10 +50,14 @@ const MeshFormat& format_to_read(const std::filesystem::path& path) {
                    fmt::format("use {}", names_that_are_read()));
 }
 
+const MeshFormat* find_format_to_write(const std::filesystem::path& path) {
+  const MeshFormat* const format = format_of(ending_of(path));
+  return format != nullptr && format->write != nullptr ? format : nullptr;
+}
+
 const MeshFormat& format_to_write(const std::filesystem::path& path) {
+  if (const MeshFormat* const format = find_format_to_write(path)) return *format;
   const std::string ending = ending_of(path);
-  const MeshFormat* const format = format_of(ending);
-  if (format != nullptr && format->write != nullptr) return *format;
   throw UsageError(
       fmt::format("{}: cannot write {}", path.string(), ending.empty() ? "a file without an ending" : ending),
       fmt::format("use a name that ends in {}", endings_that_are_written()));

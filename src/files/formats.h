@@ -50,6 +50,9 @@ bool is_a_models_name(const std::filesystem::path& path);
 const MeshFormat& format_to_read(const std::filesystem::path& path);
 const MeshFormat& format_to_write(const std::filesystem::path& path);
 
+// The same; null where format_to_write throws.
+const MeshFormat* find_format_to_write(const std::filesystem::path& path);
+
 // Throws FailureError with the system's reason (disk full, ...).
 void write_mesh(const Mesh& mesh, const Destination& destination, const MeshFormat& format);
 

@@ -6,67 +6,22 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <tbb/parallel_for.h>
 #include <utility>
-#include <vector>
 
 #include "core/error.h"
-#include "mesh/inspect.h"
-#include "packing/packing_cells.h"
 #include "pipeline/budget.h"
 #include "pipeline/held_notices.h"
+#include "pipeline/sound_cells.h"
 #include "printing/cells/shape_cells.h"
 
 namespace aerate {
 namespace {
 
-// Where surfaces of voids run through themselves.
-std::vector<CellPlace> find_crossings(const CellVoids& cells) {
-  std::vector<std::vector<Vec3d>> found(cells.voids.size());
-  tbb::parallel_for(std::size_t{0}, cells.voids.size(), [&](std::size_t i) {
-    found[i] = find_self_intersections(cells.voids[i].surface).places;
-  });
-  std::vector<CellPlace> places;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    for (const Vec3d at : found[i]) places.push_back({cells.voids[i].cell, at});
-  }
-  return places;
-}
-
-CellVoids shape_soundly(const SurfaceIndex& surface, const Packing& packing, const CellPlanes& planes,
-                        const CellShape& shape, Monitor& monitor) {
-  constexpr int kMostTries = 8;
-  CellVoids cells = shape_cells(surface, packing, planes, shape, monitor);
-  std::vector<CellPlace> solid;
-  for (int tries = 0; tries < kMostTries; ++tries) {
-    const std::vector<CellPlace> crossings = find_crossings(cells);
-    if (crossings.empty()) return cells;
-    // Those of earlier tries as well: a cell is shaped from the beginning.
-    solid.insert(solid.end(), crossings.begin(), crossings.end());
-    cells = shape_around(surface, packing, std::move(cells), shape, solid, monitor);
-  }
-  // Rare, and small: such voids stay solid.
-  const std::vector<CellPlace> crossings = find_crossings(cells);
-  const auto is_crossed = [&](const CellVoid& piece) {
-    return std::ranges::find(crossings, piece.cell, &CellPlace::cell) != crossings.end();
-  };
-  const std::size_t dropped = std::erase_if(cells.voids, is_crossed);
-  if (dropped > 0)
-    monitor.notice(
-        fmt::format("{} voids are not made: their surfaces would run through themselves", dropped));
-  return cells;
-}
-
 CarvedCells carve_at(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
                      const CellPlanes& planes, const HollowOptions& options, double tolerance,
                      Monitor& monitor) {
   const CellShape shape{options.cells->fillet, tolerance};
-  require_memory_for_cells(model.mesh, packing, shape);
-  CellVoids cells = shape_soundly(surface, packing, planes, shape, monitor);
-  if (cells.voids.empty())
-    throw NothingToRemoveError(fmt::format("{}: nothing to remove: no cell takes a ball of --fillet {:g} mm",
-                                           model.input.path.filename().string(), options.cells->fillet),
-                               "give a smaller --fillet, or --shape spheres");
+  CellVoids cells = shape_sound_cells(model, surface, packing, planes, shape, monitor);
   if (!options.drainage) {
     Solid solid = carve_cells(model.mesh, cells);
     return {std::move(cells), std::nullopt, {std::move(solid), tolerance}};
@@ -100,9 +55,7 @@ CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surfa
   constexpr int kMostTries = 10;
   if (options.drainage) require_resolvable_tubes(model.mesh, *options.drainage, options.tolerance);
   monitor.stage("shape");
-  const Box3f box = bounding_box(model.mesh);
-  const CellPlanes planes =
-      cells_of(packing, {to_double(box.lower), to_double(box.upper)}, options.packing.device, monitor);
+  const CellPlanes planes = planes_of_cells(model, packing, options.packing.device, monitor);
   const std::size_t outer = model.mesh.triangles.size();
   const std::size_t most = options.max_triangles.value_or(std::numeric_limits<std::size_t>::max());
   if (most <= outer) throw takes_more_triangles(most, outer, std::nullopt);

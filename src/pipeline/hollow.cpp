@@ -142,22 +142,10 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
 
 namespace {
 
-// The limits of a packing whose cells become voids of this model.
-ProcessChoice sized_for(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
-  PackingStop first_alone = request.stop;
-  first_alone.max_count = 1;
-  first_alone.volume = model.inspection.filled_volume;
-  const Packing largest =
-      request.method->pack(model.mesh, request.sphere_limits(), first_alone, monitor, request.device);
-  return largest.spheres.empty() ? request.process
-                                 : evenly_large(request.process, largest.spheres.front().radius);
-}
-
 HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
   PackingRequest request = request_of(options, monitor);
   PreparedModel model = prepare_model(options, monitor);
-  if (options.cells && request.spheres.empty() && !request.method->on_lattice)
-    request.process = sized_for(model, request, monitor);
+  request = sized_for(model, std::move(request), monitor);
   auto [packing, surface] = pack_model(model, request, monitor);
   if (options.cells) {
     packing.limits = request.limits();

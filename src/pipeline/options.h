@@ -54,12 +54,24 @@ struct PackingRequest {
 // For reports.
 std::string name_of_method(const PackingRequest& request);
 
+// Voids fill the cells of their packing instead of being spheres.
+struct CellOptions {
+  double fillet = 1;  // mm: radius of their inner edges, and of the ball that has to fit everywhere in them
+};
+
+// The tolerance of cells unless it is given, mm: inner walls need less than the surface of spheres, and cells have
+// more of them.
+inline constexpr double kCellTolerance = 0.1;
+
 struct PackOptions {
   std::filesystem::path model;
-  std::filesystem::path output;  // .csv, .json or .ply
+  // A table of spheres or, of cells, a table of planes or a mesh of pieces: as its ending says.
+  std::filesystem::path output;
   LoadOptions load;
   std::optional<double> weld;  // see HollowOptions
   PackingRequest packing;
+  std::optional<CellOptions> cells;
+  double tolerance = kCellTolerance;  // of pieces, mm; see HollowOptions
 };
 
 // What to do when voids make a print heavier than it would be without them.
@@ -75,15 +87,6 @@ struct ObjectName {
   const SlicerProfile* slicer = nullptr;  // one that has a format for modifiers
   std::string name;
 };
-
-// Voids fill the cells of their packing instead of being spheres.
-struct CellOptions {
-  double fillet = 1;  // mm: radius of their inner edges, and of the ball that has to fit everywhere in them
-};
-
-// The tolerance of cells unless it is given, mm: inner walls need less than the surface of spheres, and cells have
-// more of them.
-inline constexpr double kCellTolerance = 0.1;
 
 struct HollowOptions {
   std::filesystem::path model;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/error.h"
@@ -12,6 +14,7 @@
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
 #include "pipeline/job_log.h"
+#include "pipeline/pack_cells.h"
 #include "pipeline/print_prediction.h"
 
 namespace aerate {
@@ -168,6 +171,18 @@ constexpr double kMostlyOverlapped = 0.5;
 
 }  // namespace
 
+PackingRequest sized_for(const PreparedModel& model, PackingRequest request, Monitor& monitor) {
+  if (!request.is_for_cells || !request.spheres.empty() || request.method->on_lattice) return request;
+  PackingStop first_alone = request.stop;
+  first_alone.max_count = 1;
+  first_alone.volume = model.inspection.filled_volume;
+  const Packing largest =
+      request.method->pack(model.mesh, request.sphere_limits(), first_alone, monitor, request.device);
+  if (!largest.spheres.empty())
+    request.process = evenly_large(std::move(request.process), largest.spheres.front().radius);
+  return request;
+}
+
 PackedModel pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
   require_memory_for_packing(model.mesh, request);
   monitor.stage("pack");
@@ -190,25 +205,38 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
 }
 
 PackReport pack(const PackOptions& options, Monitor& monitor) {
-  const SphereFormat format = sphere_format_of(options.output);
+  // Refuses what cannot be written.
+  const auto cells = options.cells ? std::optional(cell_format_of(options.output)) : std::nullopt;
+  const auto spheres = cells ? std::nullopt : std::optional(sphere_format_of(options.output));
 
   JobLog log(monitor);
   PackReport report;
   report.method = name_of_method(options.packing);
-  report.process = options.packing.process;
   report.output = options.output;
   PreparedModel model = load_and_inspect(options.model, options.load, log);
-  AnnouncedFile table(options.output, log);
+  AnnouncedFile file(options.output, log);
   model = make_usable(std::move(model), {.mode = SurfaceMode::keep, .weld = options.weld}, log);
   report.input = model.input;
-  auto [packing, surface] = pack_model(model, options.packing, log);
+  const PackingRequest request = sized_for(model, options.packing, log);
+  report.process = request.process;
+  report.limits = request.limits();
+  auto [packing, surface] = pack_model(model, request, log);
   report.packing = std::move(packing);
   report.density = total_volume(report.packing) / model.inspection.filled_volume;
 
   log.stage("measure");
   report.clearances = measure_clearances(surface, report.packing.spheres, report.packing.limits.roof);
-  log.stage("write");
-  table.commit_text(sphere_table(report.packing, format));
+  if (cells) {
+    Packing of_cells = report.packing;
+    of_cells.limits = report.limits;
+    report.cells = write_cells(model, surface, of_cells, options, *cells, file, log);
+    report.output_bytes = report.cells->file_bytes;
+  } else {
+    log.stage("write");
+    const std::string table = sphere_table(report.packing, *spheres);
+    report.output_bytes = table.size();
+    file.commit_text(table);
+  }
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

@@ -15,11 +15,15 @@ struct PackedModel {
   SurfaceIndex surface;
 };
 
+// A request for cells with the least radius that suits cells of this model, if that is open; any other as it is.
+PackingRequest sized_for(const PreparedModel& model, PackingRequest request, Monitor& monitor);
+
 // Packs a prepared model and verifies the packing. Throws UsageError if memory would not suffice, and
 // NothingToRemoveError, naming the largest sphere that would fit, if there is no sphere under these limits.
 PackedModel pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor);
 
-// The packing alone, of a model that must be closed.
+// The packing alone, of a model that must be closed: its spheres or its cells, written as `options.output` says. A
+// mesh of pieces is read back and checked before it appears. Throws what `hollow` throws.
 PackReport pack(const PackOptions& options, Monitor& monitor);
 
 }  // namespace aerate

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "check/check_pieces.h"
 #include "check/output_facts.h"
 #include "core/packing.h"
 #include "mesh/inspect.h"
@@ -79,14 +80,26 @@ MaterialUse material_use(const HollowReport& report);
 // All stages together: the times added, the largest peak.
 StageCost total_of(const std::vector<StageCost>& stages);
 
+// The cells of a packing as `pack` wrote them, one round each sphere.
+struct PackedCells {
+  CellOptions options;
+  double tolerance = 0;  // mm
+  std::size_t plane_count = 0;
+  std::size_t file_bytes = 0;
+  std::optional<PieceFacts> pieces;  // absent if the planes were written
+};
+
 struct PackReport {
   InputFacts input;
   std::filesystem::path output;
+  std::size_t output_bytes = 0;
+  PackingLimits limits;  // of cells, if these were written
   ProcessChoice process;
   std::string method;  // name_of_method
   Packing packing;
   double density = 0;
-  std::optional<Clearances> clearances;  // measured, fp64
+  std::optional<Clearances> clearances;  // of the spheres, measured, fp64
+  std::optional<PackedCells> cells;      // absent: the spheres were written
   std::vector<StageCost> stages;
   std::vector<std::string> notices;
 };

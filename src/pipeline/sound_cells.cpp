@@ -1,0 +1,74 @@
+#include "pipeline/sound_cells.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "mesh/inspect.h"
+#include "packing/packing_cells.h"
+#include "pipeline/budget.h"
+
+namespace aerate {
+namespace {
+
+// Where surfaces of voids run through themselves.
+std::vector<CellPlace> find_crossings(const CellVoids& cells) {
+  std::vector<std::vector<Vec3d>> found(cells.voids.size());
+  tbb::parallel_for(std::size_t{0}, cells.voids.size(), [&](std::size_t i) {
+    found[i] = find_self_intersections(cells.voids[i].surface).places;
+  });
+  std::vector<CellPlace> places;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (const Vec3d at : found[i]) places.push_back({cells.voids[i].cell, at});
+  }
+  return places;
+}
+
+CellVoids shape_soundly(const SurfaceIndex& surface, const Packing& packing, const CellPlanes& planes,
+                        const CellShape& shape, Monitor& monitor) {
+  constexpr int kMostTries = 8;
+  CellVoids cells = shape_cells(surface, packing, planes, shape, monitor);
+  std::vector<CellPlace> solid;
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    const std::vector<CellPlace> crossings = find_crossings(cells);
+    if (crossings.empty()) return cells;
+    // Those of earlier tries as well: a cell is shaped from the beginning.
+    solid.insert(solid.end(), crossings.begin(), crossings.end());
+    cells = shape_around(surface, packing, std::move(cells), shape, solid, monitor);
+  }
+  // Rare, and small: such voids stay solid.
+  const std::vector<CellPlace> crossings = find_crossings(cells);
+  const auto is_crossed = [&](const CellVoid& piece) {
+    return std::ranges::find(crossings, piece.cell, &CellPlace::cell) != crossings.end();
+  };
+  const std::size_t dropped = std::erase_if(cells.voids, is_crossed);
+  if (dropped > 0)
+    monitor.notice(
+        fmt::format("{} voids are not made: their surfaces would run through themselves", dropped));
+  return cells;
+}
+
+}  // namespace
+
+CellPlanes planes_of_cells(const PreparedModel& model, const Packing& packing, const DeviceRequest& device,
+                           Monitor& monitor) {
+  const Box3f box = bounding_box(model.mesh);
+  return cells_of(packing, {to_double(box.lower), to_double(box.upper)}, device, monitor);
+}
+
+CellVoids shape_sound_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                            const CellPlanes& planes, const CellShape& shape, Monitor& monitor) {
+  require_memory_for_cells(model.mesh, packing, shape);
+  CellVoids cells = shape_soundly(surface, packing, planes, shape, monitor);
+  if (cells.voids.empty())
+    throw NothingToRemoveError(fmt::format("{}: nothing to remove: no cell takes a ball of --fillet {:g} mm",
+                                           model.input.path.filename().string(), shape.fillet),
+                               "give a smaller --fillet, or --shape spheres");
+  return cells;
+}
+
+}  // namespace aerate
