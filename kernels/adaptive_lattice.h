@@ -29,13 +29,13 @@ struct Lattice {
   AERATE_HD std::size_t size() const { return static_cast<std::size_t>(count_x) * count_y * count_z; }
 
   AERATE_HD static Vec3d turned(Vec3d v, std::uint32_t axis) {
-    if (axis == 0) return {v.z, v.x, v.y};
-    if (axis == 1) return {v.y, v.z, v.x};
+    if (axis == 0) return {v.y, v.z, v.x};
+    if (axis == 1) return {v.z, v.x, v.y};
     return v;
   }
   AERATE_HD static Vec3d turned_back(Vec3d v, std::uint32_t axis) {
-    if (axis == 0) return {v.y, v.z, v.x};
-    if (axis == 1) return {v.z, v.x, v.y};
+    if (axis == 0) return {v.z, v.x, v.y};
+    if (axis == 1) return {v.y, v.z, v.x};
     return v;
   }
 
@@ -92,7 +92,8 @@ inline Lattice make_lattice(const Box3d& box, double radius, double inset, Stack
 
 // One of an endless number of trials: all nine combinations of stacking and axis, then again with other offsets.
 inline Lattice make_lattice(const Box3d& box, double radius, double inset, std::uint32_t trial) {
-  return make_lattice(box, radius, inset, static_cast<Stacking>(trial % 3), trial / 3 % 3, trial / 9);
+  constexpr std::uint32_t kAxes[3] = {1, 0, 2};  // of those with as many places the first is taken
+  return make_lattice(box, radius, inset, static_cast<Stacking>(trial % 3), kAxes[trial / 3 % 3], trial / 9);
 }
 
 struct LatticeFit {

@@ -54,6 +54,13 @@ TEST_F(AdaptiveCuda, PacksVoidsWithRoofsAsTheCpuDoes) {
   expect_same_on_cuda(test::make_box({0, 0, 0}, {6, 6, 6}), limits, {}, 20);
 }
 
+TEST_F(AdaptiveCuda, PacksLevelSquaresFirstAsTheCpuDoes) {
+  PackingLimits limits{0.2, 0.1, 0.5, 0.9};
+  limits.in_level_squares = true;
+  limits.roof.up = {1, 0, 0};
+  expect_same_on_cuda(test::make_box({0, 0, 0}, {6, 5, 5}), limits, {}, 12);
+}
+
 TEST_F(AdaptiveCuda, StopsAtACountAndADensityAsTheCpuDoes) {
   const Mesh torus = test::make_torus(5, 2, 48, 24);
   expect_same_on_cuda(torus, {0, 0, 0.1, 10}, {.max_count = 25}, 25);

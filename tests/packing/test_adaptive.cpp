@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -263,6 +265,72 @@ TEST(Adaptive, StartsFromALatticeInASlabWhereRadiiAreAlike) {
   const Packing others = pack(slab, {0, 0, 0.2, 0.3});
   EXPECT_TRUE(
       std::ranges::none_of(others.spheres, [](const Sphere& s) { return s.kind == SphereKind::lattice; }));
+}
+
+// How spheres of a face-centred cubic lattice lie: layers along `up` half a cube apart, and in each layer four
+// neighbours at right angles, as far away as those of the next layer.
+void expect_level_squares(const Packing& packing, std::size_t up, std::size_t least_count) {
+  const PackingLimits& limits = packing.limits;
+  const double apart = 2 * limits.max_radius + limits.gap, layer = apart / std::numbers::sqrt2;
+  const auto height = [&](const Sphere& s) { return std::array{s.centre.x, s.centre.y, s.centre.z}[up]; };
+  std::vector<Sphere> lattice;
+  std::ranges::copy_if(packing.spheres, std::back_inserter(lattice),
+                       [](const Sphere& s) { return s.kind == SphereKind::lattice; });
+  ASSERT_GE(lattice.size(), least_count);
+  std::size_t level = 0, slanting = 0, most_beside = 0;
+  for (const Sphere& s : lattice) {
+    EXPECT_NEAR(s.radius, limits.max_radius, 1e-6);
+    const double layers = (height(s) - height(lattice.front())) / layer;
+    EXPECT_NEAR(layers, std::round(layers), 1e-6);
+    std::size_t beside = 0;
+    for (const Sphere& t : lattice) {
+      const double distance = length(t.centre - s.centre);
+      if (&t == &s || distance > 1.01 * apart) continue;
+      EXPECT_NEAR(distance, apart, 1e-6);
+      const double rise = std::abs(height(t) - height(s));
+      // Faces towards these stand, and towards those lean by 45 degrees.
+      EXPECT_TRUE(rise < 1e-6 || std::abs(rise - layer) < 1e-6) << rise;
+      beside += rise < 1e-6 ? 1 : 0;
+      (rise < 1e-6 ? level : slanting) += 1;
+    }
+    most_beside = std::max(most_beside, beside);
+  }
+  EXPECT_EQ(most_beside, 4U);
+  EXPECT_GT(level, lattice.size());
+  EXPECT_GT(slanting, lattice.size());
+}
+
+TEST(Adaptive, StartsFromSquareLayersThatAreLevelWhicheverAxisIsUp) {
+  const Mesh box = test::make_box({1, -2, 3}, {27, 30, 27});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      std::array<double, 3> up{};
+      up[axis] = sign;
+      PackingLimits limits{1, 0.6, 1.5, 2.5};
+      limits.roof.up = {up[0], up[1], up[2]};
+      limits.in_level_squares = true;
+      const Packing packing = pack(box, limits);
+      expect_level_squares(packing, axis, 40);
+      expect_limits_held(box, packing);
+      expect_same_bytes(pack(box, limits, {}, DeviceRequest::Kind::cpu_one_thread), packing);
+    }
+  }
+}
+
+// Without them a lattice has to be small against the model; level squares stand however few they are.
+TEST(Adaptive, LevelSquaresAreAskedFor) {
+  const Mesh box = test::make_box({0, 0, 0}, {24, 24, 24});
+  PackingLimits limits{1, 0.6, 2, 4};
+  const auto on_lattice = [&] {
+    const Packing packing = pack(box, limits);
+    return std::ranges::count(packing.spheres, SphereKind::lattice, &Sphere::kind);
+  };
+  EXPECT_EQ(on_lattice(), 0);
+  limits.in_level_squares = true;
+  EXPECT_GE(on_lattice(), 8);
+  // Only along an axis of the model.
+  limits.roof.up = normalised(Vec3d{1, 0, 1});
+  EXPECT_EQ(on_lattice(), 0);
 }
 
 TEST(Adaptive, FillsABoxThatIsAWholeNumberOfDiametersWide) {
