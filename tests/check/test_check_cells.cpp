@@ -10,8 +10,10 @@
 #include <variant>
 #include <vector>
 
+#include "check/check_pieces.h"
 #include "check/check_written.h"
 #include "core/error.h"
+#include "core/overhang.h"
 #include "packing/packing_cells.h"
 #include "printing/cells/carve_drained_cells.h"
 #include "printing/cells/shape_cells.h"
@@ -215,6 +217,61 @@ TEST_F(CheckSealedCells, FindsAVoidThatWasMovedTowardsAnother) {
   move_void(1, {-0.01, 0, 0});
   for (CellPlane& plane : cells().planes.planes) plane.offset += 0.02;
   expect_found("the gap between voids 0 and 1 is 0.99");
+}
+
+// The voids without the model, as they are read back from a file of their own.
+class CheckPieces : public CheckSealedCells {
+ protected:
+  CheckPieces() { sound_.solid = carve_cells({}, sound_.cells); }
+  PieceFacts check_alone(const Mesh& written) const {
+    Monitor silent;
+    return check_pieces(written,
+                        {.solid = sound_.solid,
+                         .model = sound_.model,
+                         .surface = SurfaceIndex(sound_.model),
+                         .inspection = inspect(sound_.model),
+                         .packing = sound_.packing,
+                         .cells = &sound_.cells,
+                         .drainage = nullptr,
+                         .tolerance = tolerance_},
+                        silent);
+  }
+  void expect_found_alone(const std::string& said) const {
+    EXPECT_TRUE(contains(message_of<FailureError>([&] { check_alone(as_read_back(mesh())); }), said));
+  }
+};
+
+TEST_F(CheckPieces, MeasuresASoundResult) {
+  const PieceFacts facts = check_alone(as_read_back(mesh()));
+  EXPECT_EQ(facts.piece_count, sound_.cells.voids.size());
+  EXPECT_EQ(facts.triangle_count, mesh().triangles.size());
+  double volume = 0;
+  for (const CellVoid& piece : sound_.cells.voids) volume -= signed_volume(piece.surface);
+  EXPECT_NEAR(facts.volume, volume, 1e-6 * volume);
+  EXPECT_GE(facts.clearances.wall, limits().wall - 1e-6);
+  EXPECT_GE(facts.clearances.gap.value(), limits().gap - 1e-6);
+  EXPECT_FALSE(facts.ceilings.has_value());
+  // Ceilings of cells without roofs are wider than this bridge.
+  limits().roof = make_roof({.degrees = 45, .bridge = 3, .up = {0, 0, 1}});
+  expect_found_alone("the bridge");
+}
+
+TEST_F(CheckPieces, FindsWhatDiffersFromThePieces) {
+  Mesh written = as_read_back(mesh());
+  written.triangles.pop_back();
+  EXPECT_THROW(check_alone(written), FailureError);
+  written = as_read_back(mesh());
+  std::swap(written.triangles[5][1], written.triangles[5][2]);
+  EXPECT_THROW(check_alone(written), FailureError);
+  cells().voids.pop_back();
+  expect_found_alone("pieces were planned");
+}
+
+TEST_F(CheckPieces, FindsPiecesTooNearTheModelOrTurned) {
+  farthest(0, {0, 0, 1}).z += 0.5F;
+  expect_found_alone("the wall");
+  for (Triangle& t : triangles_of_void(0)) std::swap(t[1], t[2]);
+  expect_found_alone("not oriented inward");
 }
 
 TEST_F(CheckSealedCells, FindsAVoidThatIsTurnedInsideOut) {
