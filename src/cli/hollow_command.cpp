@@ -54,9 +54,9 @@ CellWords words_of_cells() {
   return {
       .shape =
           "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
-          "thick as --gap and take nearly all that is deeper than --wall (default cells where voids drain "
-          "and ceilings are not limited, which is " +
-          processes_that(makes_cells) + ", unless there is --packing " + packings_on_a_lattice() +
+          "thick as --gap and take nearly all that is deeper than --wall (default cells for modifiers, and "
+          "where voids drain and ceilings are not limited, which is " +
+          processes_that(makes_cells) + "; unless there is --packing " + packings_on_a_lattice() +
           ", --spheres or --target-density; else spheres)",
       .fillet = "the channels' radius, else 1",
       .tolerance = "Void surfaces stay this far inside their shapes at most (default 0.05, of cells 0.1)"};
@@ -140,10 +140,16 @@ struct HollowCommand {
             .at(surface);
     if (void_form == "modifiers")
       options.modifiers = {&*std::ranges::find(slicers(), std::vector{flavor}, flavor_of), modifier_infill};
+    options.print = print.settings(options.packing);
     // Modifiers leave the model solid: nothing is trapped in them.
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
-    if (!options.modifiers) options = drainage.applied_to(std::move(options));
+    if (options.modifiers) {
+      options.packing.process =
+          walled_by_perimeters(std::move(options.packing.process), options.print.value_or(PrintSettings{}));
+    } else {
+      options = drainage.applied_to(std::move(options));
+    }
     ShapedRequest shaped =
         cells.applied_to(options.packing, cells.asks_for_cells().value_or(is_cells_unasked(options)),
                          options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet);
@@ -155,7 +161,6 @@ struct HollowCommand {
     options.max_hole = max_hole;
     options.material = choose_material(material.empty() ? options.packing.process.process.material : material,
                                        density, price);
-    options.print = print.settings(options.packing);
     options.heavier = print.heavier();
     require_tolerance_for(options.packing.limits(), options.tolerance);
     return options;
@@ -166,9 +171,9 @@ struct HollowCommand {
     const PackingRequest& request = options.packing;
     if (request.method->on_lattice || !request.spheres.empty() || request.stop.target_density < 1)
       return false;
+    if (options.modifiers) return true;
     const PackingLimits limits = request.limits();
-    return !options.modifiers && request.process.process.drainage == Drainage::needed &&
-           !limits.roof.shapes(limits.max_radius);
+    return request.process.process.drainage == Drainage::needed && !limits.roof.shapes(limits.max_radius);
   }
 
   void run() const {

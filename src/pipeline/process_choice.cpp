@@ -134,6 +134,17 @@ ProcessChoice evenly_large(ProcessChoice choice, double fitting) {
   return choice;
 }
 
+ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& settings) {
+  LimitValue& wall = choice.limits.at(Limit::wall);
+  const Process& process = choice.process;
+  if (process.drainage == Drainage::needed || find_process(process.name) == nullptr ||
+      wall.origin != default_of(process))
+    return choice;
+  wall = {std::max(1, settings.perimeters) * settings.line_width, "docs/slicers.md",
+          "perimeters, for modifiers"};
+  return choice;
+}
+
 ProcessChoice with_tubes(ProcessChoice choice, const Limits& given) {
   const Limits all = all_limits(choice.process, given);
   const auto add = [&](Limit limit, const char* tubes) {

@@ -8,6 +8,7 @@
 #include "core/drainage.h"
 #include "core/monitor.h"
 #include "core/packing.h"
+#include "printing/print_settings.h"
 #include "printing/processes.h"
 
 namespace aerate {
@@ -56,6 +57,10 @@ ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_s
 // The same, with evenly large spheres, whose cells take more than those of many small ones beside large ones: unless
 // the user gave the least radius, it becomes half of the largest that there will be, `fitting` or the limit.
 ProcessChoice evenly_large(ProcessChoice choice, double fitting);
+
+// For voids that become modifiers, round which the slicer prints the walls it prints anyway: unless the user or a process
+// file gave the wall, it is as thick as these. What lies between would be filled by a strip of infill that carries nothing.
+ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& settings);
 
 // The same job with voids that drain: under the limits of tubes too, those given or the process's. Throws
 // UsageError if one is neither, or if holes are narrower than channels.

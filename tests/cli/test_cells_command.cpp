@@ -64,16 +64,38 @@ TEST(CellsCommand, SealedCellsAreShellsOfTheirOwn) {
   EXPECT_EQ(report["voids"]["tolerance_used_mm"], report["limits"].value("tolerance_mm", 0.1));
 }
 
-TEST(CellsCommand, CellsAsModifiersLeaveTheModelSolid) {
+// The report on modifiers of a block.
+Json modifiers_of(const std::vector<std::string>& options) {
   const Job job;
-  const ProcessResult result =
-      run({AERATE_EXECUTABLE, "hollow", job.input("block.stl", block()), "-o", job.output("out.3mf"), "--as",
-           "modifiers", "--shape", "cells", "--json", "-"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::vector<std::string> command{
+      AERATE_EXECUTABLE, "hollow", job.input("block.stl", block()), "-o", job.output("out.3mf"), "--as",
+      "modifiers"};
+  command.insert(command.end(), options.begin(), options.end());
+  const Json report = json_of(std::move(command));
   EXPECT_EQ(read_bytes(job.output("out.3mf")).substr(0, 2), "PK");
-  const Json report = Json::parse(result.out);
+  return report;
+}
+
+TEST(CellsCommand, ModifiersAreCellsBehindThePerimetersAndLeaveTheModelSolid) {
+  const Json report = modifiers_of({});
   EXPECT_TRUE(report["drainage"].is_null());
   EXPECT_FALSE(report["modifiers"].is_null());
+  EXPECT_EQ(report["voids"]["shape"], "cells");
+  EXPECT_EQ(report["limits"]["wall_mm"], 0.9);
+  EXPECT_GE(report["measured"]["wall_mm"].get<double>(), 0.9 - 1e-6);
+  const Json three = modifiers_of({"--infill", "15%", "--perimeters", "3", "--line-width", "0.5"});
+  EXPECT_EQ(three["limits"]["wall_mm"], 1.5);
+}
+
+TEST(CellsCommand, ModifiersKeepTheShapeAndTheWallThatAreAskedFor) {
+  const Json spheres = modifiers_of({"--shape", "spheres"});
+  EXPECT_EQ(spheres["voids"]["shape"], "spheres");
+  EXPECT_EQ(spheres["limits"]["wall_mm"], 0.9);
+  const Json lattice = modifiers_of({"--packing", "hexagonal", "--max-radius", "2"});
+  EXPECT_EQ(lattice["voids"]["shape"], "spheres");
+  const Json thick = modifiers_of({"--wall", "2"});
+  EXPECT_EQ(thick["voids"]["shape"], "cells");
+  EXPECT_EQ(thick["limits"]["wall_mm"], 2.0);
 }
 
 TEST(CellsCommand, AFilletIsOneOfCells) {

@@ -118,7 +118,8 @@ TEST_F(Modifiers, CeilingsUnderModifiersHaveRoofs) {
   // under a roof, so over 3.3 mm; over 1.9 mm in a sphere.
   const auto block = model("block.stl", make_box({0, 0, 0}, {22.6F, 22.6F, 28}));
   const auto narrowing = [&](const std::string& bridge) {
-    const auto modified = hollow(block, {"--as", "modifiers", "--max-voids", "1", "--bridge", bridge});
+    const auto modified =
+        hollow(block, {"--as", "modifiers", "--shape", "spheres", "--max-voids", "1", "--bridge", bridge});
     const auto gcode = folder_.path() / "out.gcode";
     slice_with_prusa(modified, gcode,
                      {"--fill-density", "80%", "--fill-pattern", "rectilinear", "--layer-height", "0.2",
