@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -104,11 +105,19 @@ std::optional<double> break_even_infill(const FilamentUse& difference, const Pri
   PrintSettings solid = settings;
   solid.infill = 1;
   if (difference.volume_mm3(solid) >= 0 || difference.sparse_mm3 >= 0) return std::nullopt;
-  // Linear in the infill, but for a solid print, which has no joints.
-  PrintSettings nearly_solid = settings;
-  nearly_solid.infill = std::nextafter(1.0, 0.0);
-  const double at_none = difference.wall_mm3 + difference.solid_mm3 + difference.joined_mm3;
-  return std::clamp(at_none / (-printed_share(nearly_solid) * difference.sparse_mm3), 0.0, 1.0);
+  // It falls with the infill. A solid print has no joints.
+  const auto costs = [&](double infill) {
+    PrintSettings tried = settings;
+    tried.infill = infill;
+    return difference.volume_mm3(tried) > 0;
+  };
+  double costing = std::numeric_limits<double>::min(), saving = 1;
+  if (!costs(costing)) return 0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (costing + saving) / 2;
+    (costs(middle) ? costing : saving) = middle;
+  }
+  return saving;
 }
 
 TimeChange time_change(const FilamentUse& whole, const FilamentUse& hollow, std::span<const Sphere> voids,

@@ -1,6 +1,7 @@
 #include "printing/filament_use.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -25,6 +26,10 @@ constexpr double kNearest = 0.7;
 // From one pixel to the next along a way towards the middle, depths rise by at least this share of the way.
 constexpr double kRise = 0.6;
 
+// Distances from the border of a modifier are told apart in so many steps a millimetre, up to 1.27 mm.
+constexpr double kBorderSteps = 100;
+constexpr int kFarFromBorder = 127;
+
 constexpr double kPi = std::numbers::pi;
 
 // One value for each pixel of a layer.
@@ -34,6 +39,9 @@ using Pixels = std::vector<std::uint8_t>;
 // rules' lengths in these steps.
 struct Layers {
   std::vector<Pixels> depths;
+  // By how far a pixel is inside a modifier; empty where there are none.
+  std::vector<std::vector<std::int8_t>> modifiers;
+  bool prints_in_modifiers = false;
   LayerRaster raster;
   ShellRules rules;
   double step = 1;  // mm
@@ -44,6 +52,11 @@ struct Layers {
   int steps(double length) const { return static_cast<int>(std::lround(length / step)); }
   bool is_fill(std::uint8_t depth) const { return depth >= fill; }
   bool is_wall(std::uint8_t depth) const { return depth != 0 && depth < wall; }
+  // In steps of the border; negative outside.
+  int in_modifier(std::size_t k, std::size_t i) const {
+    return modifiers.empty() ? -kFarFromBorder : modifiers[k][i];
+  }
+  bool is_modified(std::size_t k, std::size_t i) const { return in_modifier(k, i) >= 0; }
   std::ptrdiff_t count() const { return std::ssize(depths); }
 };
 
@@ -132,6 +145,24 @@ Layers layers_of(const Mesh& mesh, const LayerRaster& raster, const PrintSetting
   return layers;
 }
 
+void add_modifiers(Layers& layers, const Mesh& mesh, const PrintSettings& settings) {
+  if (mesh.triangles.empty()) return;
+  layers.prints_in_modifiers = settings.modifier_infill > 0;
+  layers.modifiers.resize(layers.raster.layer_count);
+  const LayerSlicer slicer(mesh, layers.raster);
+  tbb::parallel_for(std::size_t{0}, layers.raster.layer_count, [&](std::size_t k) {
+    const LayerSlice slice = slicer.slice(k, kFarFromBorder / kBorderSteps);
+    std::vector<std::int8_t>& inside = layers.modifiers[k];
+    inside.resize(slice.inside.size());
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      const double steps =
+          std::min<double>(kFarFromBorder, kBorderSteps * static_cast<double>(slice.depth[i]));
+      inside[i] =
+          static_cast<std::int8_t>(slice.inside[i] != 0 ? steps : -1 - std::min(steps, kFarFromBorder - 1.0));
+    }
+  });
+}
+
 // The pixels within `reach` of a pixel of `seeds`.
 Pixels grown(const Pixels& seeds, double reach, const LayerRaster& raster) {
   Pixels result(seeds.size(), 0);
@@ -180,6 +211,16 @@ enum SkinFlag : std::uint8_t {
   kShadesAbove = 4,  // in those over it, as it looks down
 };
 
+// Whether a skin may be printed wider than it is in this pixel: in a modifier that stays empty only on what the layer below has.
+bool carries_skin(const Layers& layers, std::size_t k, std::size_t i) {
+  if (layers.prints_in_modifiers || k == 0 || !layers.is_modified(k, i)) return true;
+  const Pixels& below = layers.depths[k - 1];
+  if (below[i] == 0) return false;
+  const double in_modifier = layers.in_modifier(k - 1, i) / kBorderSteps;
+  const double in_fill = (below[i] - layers.fill) * layers.step;
+  return std::min(in_modifier, in_fill) < layers.rules.unsupported;
+}
+
 Pixels skins_of(const Layers& layers, std::size_t k) {
   const Pixels& depths = layers.depths[k];
   Pixels flags(depths.size(), 0);
@@ -199,16 +240,32 @@ Pixels skins_of(const Layers& layers, std::size_t k) {
     return any ? seeds : Pixels{};
   };
   const double margin = layers.rules.skin_margin - kNearest / 2 * layers.raster.pixel;
-  // Trimmed by what is skin already.
+  // Trimmed by what is skin already. Skins of modifiers and of the rest grow by themselves, and not into each other.
+  const auto grow = [&](const Pixels& all, bool modified, SkinFlag shades) {
+    Pixels seeds = all;
+    bool any = false;
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      if (layers.is_modified(k, i) != modified) seeds[i] = 0;
+      any = any || seeds[i] != 0;
+    }
+    if (!any) return;
+    const Pixels skin = grown(seeds, margin, layers.raster);
+    const Pixels shadow = grown(seeds, margin + layers.rules.shadow, layers.raster);
+    const double across = layers.rules.shadow * kBorderSteps;
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      const int inside = layers.in_modifier(k, i);
+      const bool carried = seeds[i] != 0 || carries_skin(layers, k, i);
+      if (shadow[i] != 0 && (flags[i] & kIsSkin) == 0 && carried && (modified ? -inside : inside) <= across)
+        flags[i] |= shades;
+      if (skin[i] != 0 && layers.is_fill(depths[i]) && carried && (inside >= 0) == modified)
+        flags[i] |= kIsSkin;
+    }
+  };
   const auto add = [&](std::ptrdiff_t direction, SkinFlag shades) {
     const Pixels seeds = exposed(static_cast<std::ptrdiff_t>(k) + direction);
     if (seeds.empty()) return;
-    const Pixels skin = grown(seeds, margin, layers.raster);
-    const Pixels shadow = grown(seeds, margin + layers.rules.shadow, layers.raster);
-    for (std::size_t i = 0; i < depths.size(); ++i) {
-      if (shadow[i] != 0 && (flags[i] & kIsSkin) == 0) flags[i] |= shades;
-      if (skin[i] != 0 && layers.is_fill(depths[i])) flags[i] |= kIsSkin;
-    }
+    grow(seeds, false, shades);
+    if (!layers.modifiers.empty()) grow(seeds, true, shades);
   };
   // What looks down goes before what looks up.
   if (layers.rules.bottom_layers > 0) add(-1, kShadesAbove);
@@ -278,7 +335,8 @@ enum class Part : std::uint8_t {
 // A layer's pixels by what is printed there.
 struct Parts {
   std::vector<Part> parts;
-  double edge = 0;  // of sparse infill along walls and shells, in sides of pixels
+  // Of sparse infill along walls, shells and the border of modifiers, in sides of pixels; outside and inside of modifiers.
+  std::array<double, 2> edge{}, border{};
 };
 
 Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size_t k) {
@@ -307,8 +365,8 @@ Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
   };
   // The edge's length is how fast the area falls with the distance from walls and shells.
   const int band = std::max(1, layers.half_line / 2);
-  Parts result{std::vector<Part>(depths.size(), Part::outside), 0};
-  std::size_t in_band = 0;
+  Parts result{std::vector<Part>(depths.size(), Part::outside), {}};
+  std::array<std::size_t, 2> in_band{}, in_border_band{};
   for (std::size_t row = 0; row < raster.count_y; ++row) {
     for (std::size_t column = 0; column < raster.count_x; ++column) {
       const std::size_t i = row * raster.count_x + column;
@@ -325,21 +383,34 @@ Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
         const int from_shell = cover.depths[i] - layers.fill - layers.widening;
         if (from_shell < layers.half_line + band && from_shell < from_edge && is_kept(row, column, i))
           from_edge = from_shell;
+        const int inside = layers.in_modifier(k, i);
+        const int from_border = layers.steps(std::abs(inside) / kBorderSteps);
+        const bool at_border =
+            std::abs(inside) < kFarFromBorder - 1 && from_edge >= 0 && from_border < from_edge;
+        if (at_border) from_edge = from_border;
         part = from_edge < 0 ? Part::shell : from_edge < layers.half_line ? Part::rim : Part::sparse;
-        if (std::abs(2 * (from_edge - layers.half_line) + 1) < 2 * band) ++in_band;
+        if (std::abs(2 * (from_edge - layers.half_line) + 1) < 2 * band)
+          ++(at_border ? in_border_band : in_band)[inside >= 0 ? 1 : 0];
       }
     }
   }
-  result.edge = static_cast<double>(in_band) * raster.pixel / (2 * band * layers.step);
+  const double side_of_pixel = raster.pixel / (2 * band * layers.step);
+  for (std::size_t side = 0; side < 2; ++side) {
+    result.edge[side] = static_cast<double>(in_band[side]) * side_of_pixel;
+    result.border[side] = static_cast<double>(in_border_band[side]) * side_of_pixel;
+  }
   return result;
 }
 
 FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
   const LayerRaster& raster = layers.raster;
   const ShellRules& rules = layers.rules;
-  // Areas in pixels, lengths in sides of pixels.
-  std::size_t wall = 0, solid = 0, fill = 0, sparse = 0, skin_edge = 0, shade_edge = 0;
-  const auto is_sparse = [&](std::size_t i) { return layer.parts[i] == Part::sparse ? 1U : 0U; };
+  // Areas in pixels, lengths in sides of pixels; of infill outside and inside of modifiers.
+  struct Infill {
+    std::size_t fill = 0, solid = 0, sparse = 0, skin_edge = 0, shade_edge = 0;
+  };
+  std::size_t wall = 0;
+  std::array<Infill, 2> infill;
   // The first and the last pixels of rows and columns are outside.
   const std::size_t columns = raster.count_x;
   for (std::size_t i = columns; i + columns < layer.parts.size(); ++i) {
@@ -347,55 +418,81 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
     if (part == Part::outside) continue;
     if (layers.is_wall(layers.depths[k][i])) ++wall;
     if (part == Part::wall) continue;
-    ++fill;
-    if (part == Part::sparse) ++sparse;
-    if (part == Part::shell) ++solid;
+    Infill& here = infill[layers.is_modified(k, i) ? 1 : 0];
+    ++here.fill;
+    if (part == Part::sparse) ++here.sparse;
+    if (part == Part::shell) ++here.solid;
     if (part == Part::skin || part == Part::shade) {
-      ++solid;
-      (part == Part::skin ? skin_edge : shade_edge) +=
-          is_sparse(i - 1) + is_sparse(i + 1) + is_sparse(i - columns) + is_sparse(i + columns);
+      ++here.solid;
+      for (const std::size_t next : {i - 1, i + 1, i - columns, i + columns}) {
+        if (layer.parts[next] != Part::sparse) continue;
+        Infill& beside = infill[layers.is_modified(k, next) ? 1 : 0];
+        ++(part == Part::skin ? beside.skin_edge : beside.shade_edge);
+      }
     }
   }
   const double volume = raster.pixel * raster.pixel * raster.layer_height;
   // A curve of length L crosses L * 4 / pi / pixel sides of pixels, averaged over its directions (Cauchy,
   // Crofton).
   const double strip = kPi / 4 * raster.pixel * raster.layer_height;
-  const double skin_strip = strip * static_cast<double>(skin_edge);
-  const double shade_strip = strip * static_cast<double>(shade_edge);
-  const double edge = raster.pixel * raster.layer_height * layer.edge + skin_strip + shade_strip;
   FilamentUse use;
   use.wall_mm3 = volume * rules.wall_density * static_cast<double>(wall);
-  use.solid_mm3 = volume * static_cast<double>(solid) + rules.widening * shade_strip;
-  use.sparse_mm3 =
-      std::max(0.0, volume * static_cast<double>(sparse) - rules.spacing / 2 * (skin_strip + shade_strip) -
-                        rules.widening * shade_strip);
-  use.joined_mm3 = kJoinedShare * rules.spacing * edge;
-  use.rim_mm3 = volume * static_cast<double>(fill) - use.solid_mm3 - use.sparse_mm3;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Infill& of = infill[side];
+    const double skin_strip = strip * static_cast<double>(of.skin_edge);
+    const double shade_strip = strip * static_cast<double>(of.shade_edge);
+    const double edge = raster.pixel * raster.layer_height * layer.edge[side] + skin_strip + shade_strip;
+    const double solid = volume * static_cast<double>(of.solid) + rules.widening * shade_strip;
+    SparseUse& sparse = side == 1 ? use.modified : use;
+    use.solid_mm3 += solid;
+    sparse.sparse_mm3 =
+        std::max(0.0, volume * static_cast<double>(of.sparse) -
+                          rules.spacing / 2 * (skin_strip + shade_strip) - rules.widening * shade_strip);
+    sparse.joined_mm3 = kJoinedShare * rules.spacing * edge;
+    sparse.border_mm3 = rules.spacing * raster.pixel * raster.layer_height * layer.border[side];
+    sparse.rim_mm3 = volume * static_cast<double>(of.fill) - solid - sparse.sparse_mm3;
+  }
   return use;
+}
+
+SparseUse sum(const SparseUse& a, const SparseUse& b, double sign) {
+  return {a.joined_mm3 + sign * b.joined_mm3, a.sparse_mm3 + sign * b.sparse_mm3,
+          a.rim_mm3 + sign * b.rim_mm3, a.border_mm3 + sign * b.border_mm3};
+}
+
+FilamentUse sum(const FilamentUse& a, const FilamentUse& b, double sign) {
+  const SparseUse &sparse_a = a, &sparse_b = b;
+  return {sum(sparse_a, sparse_b, sign), a.wall_mm3 + sign * b.wall_mm3, a.solid_mm3 + sign * b.solid_mm3,
+          sum(a.modified, b.modified, sign)};
 }
 
 }  // namespace
 
+double SparseUse::volume_mm3(double infill, const PrintSettings& settings) const {
+  if (infill >= 1) return sparse_mm3 + rim_mm3;
+  return (infill > 0 ? joined_mm3 : 0) + border_share(infill, settings) * border_mm3 +
+         printed_share(infill, settings.pattern) * sparse_mm3;
+}
+
 double FilamentUse::volume_mm3(const PrintSettings& settings) const {
-  if (settings.infill >= 1) return wall_mm3 + solid_mm3 + sparse_mm3 + rim_mm3;
-  const double joined = settings.infill > 0 ? joined_mm3 : 0;
-  return wall_mm3 + solid_mm3 + joined + printed_share(settings) * sparse_mm3;
+  return wall_mm3 + solid_mm3 + SparseUse::volume_mm3(settings.infill, settings) +
+         modified.volume_mm3(settings.modifier_infill, settings);
 }
 
 FilamentUse operator+(const FilamentUse& a, const FilamentUse& b) {
-  return {a.wall_mm3 + b.wall_mm3, a.solid_mm3 + b.solid_mm3, a.joined_mm3 + b.joined_mm3,
-          a.sparse_mm3 + b.sparse_mm3, a.rim_mm3 + b.rim_mm3};
+  return sum(a, b, 1);
 }
 
 FilamentUse operator-(const FilamentUse& a, const FilamentUse& b) {
-  return {a.wall_mm3 - b.wall_mm3, a.solid_mm3 - b.solid_mm3, a.joined_mm3 - b.joined_mm3,
-          a.sparse_mm3 - b.sparse_mm3, a.rim_mm3 - b.rim_mm3};
+  return sum(a, b, -1);
 }
 
-FilamentUse filament_use(const Mesh& upright, const PrintSettings& settings, double pixel) {
+FilamentUse filament_use(const Mesh& upright, const PrintSettings& settings, double pixel,
+                         const Mesh& modifiers) {
   if (upright.triangles.empty()) return {};
   const Mesh mesh = turned(upright);
-  const Layers layers = layers_of(mesh, raster_of(mesh, pixel, settings.layer_height, kMostPixels), settings);
+  Layers layers = layers_of(mesh, raster_of(mesh, pixel, settings.layer_height, kMostPixels), settings);
+  add_modifiers(layers, turned(modifiers), settings);
   const std::size_t count = layers.depths.size();
   std::vector<Pixels> skins(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) { skins[k] = skins_of(layers, k); });

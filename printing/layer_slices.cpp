@@ -181,11 +181,8 @@ void LayerSlicer::measure_depth(const std::vector<Segment>& contour, double reac
     }
   }
   const auto reach_squared = static_cast<float>(reach * reach);
-  for (std::size_t i = 0; i < slice.depth.size(); ++i) {
-    float& depth = slice.depth[i];
-    const bool is_near = slice.inside[i] != 0 && depth < reach_squared;
-    depth = is_near ? std::sqrt(depth) : std::numeric_limits<float>::infinity();
-  }
+  for (float& depth : slice.depth)
+    depth = depth < reach_squared ? std::sqrt(depth) : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace aerate

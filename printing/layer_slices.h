@@ -27,7 +27,8 @@ LayerRaster raster_of(const Mesh& mesh, double pixel, double layer_height, doubl
 // One layer of a model, as a slicer cuts it at its middle.
 struct LayerSlice {
   std::vector<std::uint8_t> inside;  // pixels whose centre is in the solid (winding number at least 1)
-  std::vector<float> depth;  // distance of a pixel's centre from the contour, up to `reach`; else infinite
+  std::vector<float>
+      depth;  // distance of a pixel's centre from the contour, on both sides, up to `reach`; else infinite
 };
 
 // Cuts a closed mesh (outer surface and inward voids alike) into layers, along z.

@@ -8,7 +8,8 @@ enum class InfillPattern { gyroid, lines };
 
 // How a model is printed from filament, as slicers name it. Lengths in mm.
 struct PrintSettings {
-  double infill = 1.0;  // share of the inside that is printed, 0..1
+  double infill = 1.0;         // share of the inside that is printed, 0..1
+  double modifier_infill = 0;  // the same where a modifier is
   InfillPattern pattern = InfillPattern::gyroid;
   int perimeters = 2;
   double line_width = 0.45;

@@ -10,16 +10,20 @@ namespace {
 // The slicer's.
 constexpr double kInfillOverlap = 0.25;  // of a spacing, infill into walls
 constexpr double kSkinMargin = 3.0;
-constexpr double kShellSpacing = 1.05;  // spacings that shells are measured in
-constexpr double kLeastShell = 1.0;     // of those: it opens shells by half of this,
-constexpr double kGrownAgain = 0.8;     // and grows them by this
-constexpr double kTopThickness = 0.7;   // mm, that solid layers have at least, if there are any
+constexpr double kUnsupportedShare = 0.3;  // of that margin
+constexpr double kShellSpacing = 1.05;     // spacings that shells are measured in
+constexpr double kLeastShell = 1.0;        // of those: it opens shells by half of this,
+constexpr double kGrownAgain = 0.8;        // and grows them by this
+constexpr double kTopThickness = 0.7;      // mm, that solid layers have at least, if there are any
 constexpr double kBottomThickness = 0.5;
 constexpr double kLean = 0.2;  // line widths: it opens what looks up or down by half of this
 
 // Fitted to the slicer's figures for three of the six models that they are held against.
 constexpr double kWidenedWalls = 0.4;  // spacings
 constexpr double kGyroidShare = 0.926;
+
+// Fitted to two of the models: at the border of modifiers, where infill is narrow, each line's end is joined along so much, mm.
+constexpr double kJoinedPerEnd = 1.6;
 
 // Lines are printed side by side at less than their width, since their sides are round.
 double spacing_of(const PrintSettings& settings) {
@@ -48,15 +52,22 @@ ShellRules shell_rules(const PrintSettings& settings) {
   rules.bottom_layers = solid_layers(settings.bottom_layers, kBottomThickness, settings.layer_height);
   rules.lean = kLean * settings.line_width;
   rules.skin_margin = kSkinMargin;
+  rules.unsupported = kUnsupportedShare * kSkinMargin;
   rules.shadow = kShellSpacing * rules.spacing;
   rules.least_shell = kLeastShell * kShellSpacing * rules.spacing;
   rules.widening = (kGrownAgain - kLeastShell / 2) * kShellSpacing * rules.spacing;
   return rules;
 }
 
-double printed_share(const PrintSettings& settings) {
-  if (settings.infill >= 1) return 1;
-  return settings.infill * (settings.pattern == InfillPattern::gyroid ? kGyroidShare : 1.0);
+double printed_share(double infill, InfillPattern pattern) {
+  if (infill >= 1) return 1;
+  return infill * (pattern == InfillPattern::gyroid ? kGyroidShare : 1.0);
+}
+
+double border_share(double infill, const PrintSettings& settings) {
+  // Ends of lines on a millimetre of any curve (Cauchy, Crofton).
+  const double ends = 2 / std::numbers::pi * infill / spacing_of(settings);
+  return std::min(kJoinedShare, kJoinedPerEnd * ends);
 }
 
 }  // namespace aerate

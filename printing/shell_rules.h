@@ -16,6 +16,7 @@ struct ShellRules {
   // Layers that look up or down lean if their contour moves by this much from one layer to the next.
   double lean = 0;
   double skin_margin = 0;  // what looks up or down is printed so much wider than it is, into the infill
+  double unsupported = 0;  // but into a modifier of 0 % only so far as less than this of one is below it
   double shadow = 0;       // and its shadow in the next layers is wider than it by this
   int top_layers = 0;      // layers of a skin that looks up with its shadow, and of one that looks down:
   int bottom_layers = 0;   // as many as asked for, or as make up the least thickness of the profiles
@@ -25,7 +26,10 @@ struct ShellRules {
 ShellRules shell_rules(const PrintSettings& settings);
 
 // What is printed, by length of line and area, of the space that lines of sparse infill run through (0..1).
-double printed_share(const PrintSettings& settings);
+double printed_share(double infill, InfillPattern pattern);
+
+// The share of the border of modifiers along which lines of sparse infill are joined that end there (0..1).
+double border_share(double infill, const PrintSettings& settings);
 
 // Lines of sparse infill are joined along this share of the edge that they end at. Fitted.
 constexpr double kJoinedShare = 0.545;

@@ -151,6 +151,7 @@ Json json_of(const PrintPrediction& print) {
   const PrintSettings& settings = print.settings;
   return {{"described", print.described},
           {"infill_percent", 100 * settings.infill},
+          {"modifier_infill_percent", 100 * settings.modifier_infill},
           {"infill_pattern", settings.pattern == InfillPattern::gyroid ? "gyroid" : "lines"},
           {"perimeters", settings.perimeters},
           {"line_width_mm", settings.line_width},

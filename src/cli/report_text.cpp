@@ -196,6 +196,15 @@ void add_print(Lines& lines, const HollowReport& report) {
   }
 }
 
+// Of modifiers, which have no figures of solid material.
+void add_predicted_filament(Lines& lines, const PrintPrediction& print) {
+  const double before = print.filament_before_mm3, after = print.filament_after_mm3;
+  lines.add("filament", "{:.2f} -> {:.2f} cm3 ({:+.1f} %), predicted for {:g} % infill{}; the print {}",
+            before / 1000, after / 1000, 100 * (after / before - 1), 100 * print.settings.infill,
+            print.described ? "" : ", which is assumed: --infill says what it is", in_words(print.time));
+  lines.add("", "with {}", in_words(print.settings));
+}
+
 void add_volume(Lines& lines, const HollowReport& report) {
   const OutputFacts& output = report.output;
   const double percent = 100 * output.volume_removed / output.volume_before;
@@ -225,6 +234,7 @@ void add_material(Lines& lines, const HollowReport& report) {
               report.material.name, report.modifiers->infill_percent,
               (use.mass_before_g - use.mass_after_g) / 100, (use.cost_before - use.cost_after) / 100,
               figures);
+    if (report.print) add_predicted_filament(lines, *report.print);
     return;
   }
   lines.add("material", "{} {:.1f} -> {:.1f} g, cost {:.2f} -> {:.2f} (at {})", report.material.name,

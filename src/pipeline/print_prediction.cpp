@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <span>
 #include <string>
 
 #include "core/error.h"
@@ -57,6 +58,39 @@ std::string change_in_words(const PrintPrediction& prediction) {
                      in_percent(prediction.settings.infill));
 }
 
+// What modifiers are assumed to be printed in unless the print is described.
+constexpr double kUsualInfill = 0.15;
+
+PrintSettings settings_of(const HollowOptions& options) {
+  PrintSettings settings = options.print.value_or(PrintSettings{});
+  if (options.modifiers) {
+    if (!options.print) settings.infill = kUsualInfill;
+    settings.modifier_infill = options.modifiers->infill_percent / 100;
+  }
+  return settings;
+}
+
+// The voids by themselves, as solids.
+Mesh voids_of(const Solid& solid) {
+  Mesh mesh;
+  mesh.positions = solid.mesh.positions;
+  for (const SolidPart& part : solid.of(PartKind::void_surface))
+    for (const Triangle& triangle : triangles_of(solid.mesh, part))
+      mesh.triangles.push_back({triangle[0], triangle[2], triangle[1]});
+  return mesh;
+}
+
+std::string what_else(const PrintPrediction& prediction, const HollowOptions& options) {
+  if (!options.modifiers)
+    return fmt::format("these voids {}; {}", saving_infill(prediction.break_even_infill), kOtherWays);
+  return fmt::format(
+      "infill is joined along the border of modifiers, which costs more than these save: they {}; larger "
+      "ones "
+      "(--shape cells, --min-radius, --max-radius) or {} cost less; --force writes these all the same",
+      saving_infill(prediction.break_even_infill),
+      options.modifiers->infill_percent > 0 ? "a lower --modifier-infill" : "a thinner --wall");
+}
+
 }  // namespace
 
 std::string where_voids_pay(double radius, const PrintSettings& settings) {
@@ -87,36 +121,38 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
 std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
                                              const HollowOptions& options, Monitor& monitor) {
   const bool prints_filament = options.packing.process.process.drainage == Drainage::not_needed;
-  if (options.modifiers || !prints_filament) return std::nullopt;
+  if (!prints_filament) return std::nullopt;
   monitor.stage("predict");
   PrintPrediction prediction;
   prediction.described = options.print.has_value();
-  prediction.settings = options.print.value_or(PrintSettings{});
+  prediction.settings = settings_of(options);
   const PrintSettings& settings = prediction.settings;
   const UprightFrame frame(packing.limits.roof.up);
-  const auto use_of = [&](const Mesh& mesh) {
-    return frame.is_the_models_own() ? filament_use(mesh, settings)
-                                     : filament_use(turned_upright(mesh, frame), settings);
+  const auto upright = [&](const Mesh& mesh) {
+    return frame.is_the_models_own() ? mesh : turned_upright(mesh, frame);
   };
-  const FilamentUse whole = use_of(outer);
+  const FilamentUse whole = filament_use(upright(outer), settings);
   monitor.check_interrupted();
-  const FilamentUse hollow = use_of(solid.mesh);
+  const FilamentUse hollow =
+      options.modifiers ? filament_use(upright(outer), settings, kFilamentPixel, upright(voids_of(solid)))
+                        : filament_use(upright(solid.mesh), settings);
   monitor.check_interrupted();
   prediction.filament_before_mm3 = whole.volume_mm3(settings);
   prediction.filament_after_mm3 = hollow.volume_mm3(settings);
   prediction.break_even_infill = break_even_infill(hollow - whole, settings);
-  prediction.break_even_radius = break_even_radius(settings);
-  prediction.time = time_change(whole, hollow, packing.spheres, settings);
+  // No walls are printed round modifiers.
+  if (!options.modifiers) prediction.break_even_radius = break_even_radius(settings);
+  prediction.time = time_change(
+      whole, hollow, options.modifiers ? std::span<const Sphere>() : std::span(packing.spheres), settings);
 
-  if (prediction.described && prediction.heavier()) {
-    if (options.heavier == HeavierPrint::refuse) {
-      throw NothingToRemoveError(
-          "the print would become heavier: " + change_in_words(prediction),
-          fmt::format("these voids {}; {}", saving_infill(prediction.break_even_infill), kOtherWays));
+  const bool tells = prediction.described || options.modifiers;
+  if (tells && prediction.heavier()) {
+    if (prediction.described && options.heavier == HeavierPrint::refuse) {
+      throw NothingToRemoveError("the print would become heavier: " + change_in_words(prediction),
+                                 what_else(prediction, options));
     }
     monitor.notice("the print becomes heavier: " + change_in_words(prediction));
-  } else if (prediction.described &&
-             prediction.filament_after_mm3 > (1 - kUncertain) * prediction.filament_before_mm3) {
+  } else if (tells && prediction.filament_after_mm3 > (1 - kUncertain) * prediction.filament_before_mm3) {
     monitor.notice(fmt::format(
         "the print may become heavier: {} is predicted, to within {:g} points; `aerate slice` asks "
         "your slicer",

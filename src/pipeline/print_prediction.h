@@ -14,12 +14,14 @@ namespace aerate {
 // What voids change about a print of filament, as predicted.
 struct PrintPrediction {
   PrintSettings settings;
-  // The print was described; else these are usual settings, and its infill is not known.
+  // The print was described; else these are usual settings, and its infill is not known: for voids taken to be solid, for
+  // modifiers 15 %.
   bool described = false;
   double filament_before_mm3 = 0;
   double filament_after_mm3 = 0;
   std::optional<double> break_even_infill;  // these voids save above it (0..1); nothing: never
-  std::optional<double> break_even_radius;  // a void far from others saves above it, mm; nothing: never
+  std::optional<double>
+      break_even_radius;  // a void far from others saves above it, mm; nothing: never, or modifiers
   TimeChange time = TimeChange::same;
 
   bool heavier() const { return filament_after_mm3 > filament_before_mm3; }
@@ -34,8 +36,7 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
 // "voids of 3.5 mm save above 62 % infill", and what else there is to do.
 std::string where_voids_pay(double radius, const PrintSettings& settings);
 
-// `outer`: the surface of `solid` without the voids. Nothing for modifiers, and where the process prints no
-// filament. Throws NothingToRemoveError if the print is described
+// `outer`: the surface of `solid` without the voids. Nothing where the process prints no filament. Throws NothingToRemoveError if the print is described
 // and would become heavier, unless the options allow it; then it is a notice.
 std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
                                              const HollowOptions& options, Monitor& monitor);

@@ -8,7 +8,7 @@ MaterialUse material_use(const HollowReport& report) {
   const double grams_per_mm3 = report.material.density_g_cm3 / 1000;
   const double price_per_gram = report.material.price_per_kg / 1000;
   MaterialUse use;
-  use.predicted = report.print && report.print->described;
+  use.predicted = report.print && report.print->described && !report.modifiers;
   use.mass_before_g =
       (use.predicted ? report.print->filament_before_mm3 : report.output.volume_before) * grams_per_mm3;
   use.mass_after_g =

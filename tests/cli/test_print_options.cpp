@@ -53,6 +53,36 @@ TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
                  {"0 % infill", "however large it is", "where they fit", "modifier", "--force"});
 }
 
+// Infill of modifiers joins its lines along every small border.
+TEST(PrintOptions, ModifiersThatMakeAPrintHeavierAreRefused) {
+  const Job job;
+  const auto modifiers = [&](const std::vector<std::string>& options) {
+    return run(with({AERATE_EXECUTABLE, "hollow", job.input("model.stl", make_box({0, 0, 0}, {20, 20, 20})),
+                     "-o", job.output("out.3mf"), "--as", "modifiers", "--json", "-"},
+                    options));
+  };
+  const std::vector<std::string> bad{"--shape", "spheres", "--max-radius", "2", "--modifier-infill", "5"};
+  const ProcessResult refused = modifiers(with(bad, {"--infill", "15%"}));
+  EXPECT_EQ(refused.exit_code, kNothing);
+  EXPECT_TRUE(contains(refused.err, "would become heavier"));
+  EXPECT_TRUE(contains(refused.err, "a lower --modifier-infill"));
+  EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+
+  const ProcessResult forced = modifiers(with(bad, {"--infill", "15%", "--force"}));
+  ASSERT_EQ(forced.exit_code, 0) << forced.err;
+  EXPECT_GT(Json::parse(forced.out)["print"]["filament_change_percent"].get<double>(), 3);
+
+  // Without a description 15 % is assumed, and that it may cost is said.
+  const Json assumed = Json::parse(modifiers(bad).out);
+  EXPECT_FALSE(assumed["print"]["described"].get<bool>());
+  EXPECT_EQ(assumed["print"]["infill_percent"], 15.0);
+  EXPECT_TRUE(contains(assumed["notices"].dump(), "becomes heavier"));
+
+  const Json cells = Json::parse(modifiers({"--infill", "15%"}).out);
+  EXPECT_LT(cells["print"]["filament_change_percent"].get<double>(), -15);
+  EXPECT_TRUE(cells["print"]["break_even_radius_mm"].is_null());
+}
+
 // Closer to no change than the prediction is to the slicer.
 TEST(PrintOptions, APrintThatMayBecomeHeavierIsSaidSo) {
   const Job job;

@@ -91,8 +91,8 @@ TEST(Economics, AtTheBreakEvenInfillNothingIsSavedOrLost) {
 }
 
 TEST(Economics, SmallVoidsMakeAPrintLonger) {
-  const FilamentUse whole{.wall_mm3 = 4000, .solid_mm3 = 2000, .joined_mm3 = 400, .sparse_mm3 = 40000};
-  const FilamentUse hollow{.wall_mm3 = 12000, .solid_mm3 = 9000, .joined_mm3 = 1000, .sparse_mm3 = 8000};
+  const FilamentUse whole{SparseUse{.joined_mm3 = 400, .sparse_mm3 = 40000}, 4000, 2000, {}};
+  const FilamentUse hollow{SparseUse{.joined_mm3 = 1000, .sparse_mm3 = 8000}, 12000, 9000, {}};
   const std::vector<Sphere> voids(100, Sphere{{0, 0, 0}, 3, SphereKind::adaptive});
   EXPECT_EQ(time_change(whole, hollow, voids, PrintSettings{.infill = 0.15}), TimeChange::longer);
   EXPECT_EQ(time_change(whole, whole, {}, PrintSettings{.infill = 0.15}), TimeChange::same);

@@ -49,6 +49,28 @@ TEST(FilamentUse, ABlockHasWallsSkinsAndInfillOfItsOwnSize) {
   EXPECT_NEAR(use.volume_mm3(PrintSettings{.infill = 1}), side * side * side, 0.02 * side * side * side);
 }
 
+TEST(FilamentUse, ModifiersTakeInfillAndLinesAreJoinedAlongTheirBorder) {
+  const Mesh block = make_box({0, 0, 0}, {30, 30, 30}), modifier = make_box({8, 8, 8}, {22, 22, 22});
+  PrintSettings settings = PrintSettings{.infill = 0.2};
+  const FilamentUse whole = filament_use(block, settings, 0.25);
+  const FilamentUse use = filament_use(block, settings, 0.25, modifier);
+  EXPECT_NEAR(use.wall_mm3, whole.wall_mm3, 0.01 * whole.wall_mm3);
+  EXPECT_NEAR(use.solid_mm3, whole.solid_mm3, 0.02 * whole.solid_mm3);
+  // Lines end half a spacing from the border, on both sides of it.
+  const double spacing = 0.45 - 0.2 * (1 - kPi / 4), side = 14;
+  const auto squared = [](double x) { return x * x; };
+  EXPECT_NEAR(use.modified.sparse_mm3, squared(side - spacing) * side, 0.02 * squared(side) * side);
+  const double left = whole.sparse_mm3 - squared(side + spacing) * side;
+  EXPECT_NEAR(use.sparse_mm3, left, 0.02 * whole.sparse_mm3);
+  EXPECT_NEAR(use.border_mm3, 4 * side * spacing * side, 0.1 * 4 * side * spacing * side);
+  EXPECT_NEAR(use.modified.border_mm3, 4 * side * spacing * side, 0.1 * 4 * side * spacing * side);
+  // Empty ones take nothing, full ones fill their space.
+  settings.modifier_infill = 0;
+  EXPECT_EQ(use.modified.volume_mm3(0, settings), 0);
+  EXPECT_NEAR(use.modified.volume_mm3(1, settings), squared(side) * side, 0.02 * squared(side) * side);
+  EXPECT_LT(use.volume_mm3(settings), whole.volume_mm3(settings));
+}
+
 TEST(FilamentUse, WhereABlockLiesDoesNotMatter) {
   const Mesh block = make_box({0, 0, 0}, {30, 20, 10});
   const PrintSettings settings = PrintSettings{.infill = 0.3};

@@ -78,7 +78,8 @@ class EconomicsSlicer : public testing::Test {
 
   void expect_as_predicted(const std::filesystem::path& model, const std::vector<std::string>& limits,
                            const std::vector<std::string>& infills) const {
-    const auto hollow = folder_.path() / "hollow.stl";
+    const bool modifiers = std::ranges::find(limits, "modifiers") != limits.end();
+    const auto hollow = folder_.path() / (modifiers ? "hollow.3mf" : "hollow.stl");
     for (const std::string& infill : infills) {
       SCOPED_TRACE(model.filename().string() + " at " + infill);
       std::vector<std::string> command{AERATE_EXECUTABLE, "hollow", model,      "-o",   hollow,
@@ -104,6 +105,16 @@ TEST_F(EconomicsSlicer, ABlockThatIsPrintedSolidAndSparse) {
   const auto block = folder_.path() / "block.stl";
   write_mesh(make_box({0, 0, 0}, {26, 26, 26}), block, MeshFormat::stl);
   expect_as_predicted(block, {"--min-radius", "1.5", "--max-radius", "8"}, {"100%", "20%"});
+}
+
+// One kind that saves, and one whose infill costs more along its borders than it saves.
+TEST_F(EconomicsSlicer, ModifiersInABlock) {
+  const auto block = folder_.path() / "block.stl";
+  write_mesh(make_box({0, 0, 0}, {26, 26, 26}), block, MeshFormat::stl);
+  expect_as_predicted(block, {"--as", "modifiers"}, {"15%"});
+  expect_as_predicted(
+      block, {"--as", "modifiers", "--shape", "spheres", "--max-radius", "2", "--modifier-infill", "5"},
+      {"15%"});
 }
 
 // With the voids that the command makes of its own accord.
