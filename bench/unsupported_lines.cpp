@@ -56,8 +56,8 @@ std::optional<Interval> where_near_point(double dx, double dy, double x, double 
   return Interval{(half - std::sqrt(root)) / square, (half + std::sqrt(root)) / square};
 }
 
-// Where a line is within `reach` of another. That is one interval, since what is that near is convex: the rectangle along the
-// other line and the discs at its ends.
+// Where a line is within `reach` of another. That is one interval, since what is that near is convex: the
+// rectangle along the other line and the discs at its ends.
 std::optional<Interval> where_near(const ExtrusionMove& line, const ExtrusionMove& other, double reach) {
   const double dx = line.x - line.from_x, dy = line.y - line.from_y;
   const double sx = other.from_x - line.from_x, sy = other.from_y - line.from_y;

@@ -211,7 +211,8 @@ enum SkinFlag : std::uint8_t {
   kShadesAbove = 4,  // in those over it, as it looks down
 };
 
-// Whether a skin may be printed wider than it is in this pixel: in a modifier that stays empty only on what the layer below has.
+// Whether a skin may be printed wider than it is in this pixel: in a modifier that stays empty only on what
+// the layer below has.
 bool carries_skin(const Layers& layers, std::size_t k, std::size_t i) {
   if (layers.prints_in_modifiers || k == 0 || !layers.is_modified(k, i)) return true;
   const Pixels& below = layers.depths[k - 1];

@@ -33,8 +33,8 @@ inline constexpr double kFilamentPixel = 0.5;
 // Filament for a closed mesh (outer surface and inward voids alike) that is printed upwards along z. Layer by
 // layer on a raster, with the exact distance of each pixel's centre from the contour: O(triangles + pixels);
 // the number of threads does not change the result.
-//   modifiers: closed and outward; in them infill is that of modifiers. Its lines end at their border and are joined along it, and
-//              on the other side so are those of the rest.
+//   modifiers: closed and outward; in them infill is that of modifiers. Its lines end at their border and are
+//              joined along it, and on the other side so are those of the rest.
 //   pixel: edge of a pixel, mm, where the model is not so large that it has to be coarser
 FilamentUse filament_use(const Mesh& mesh, const PrintSettings& settings, double pixel = kFilamentPixel,
                          const Mesh& modifiers = {});

@@ -36,8 +36,9 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
 // "voids of 3.5 mm save above 62 % infill", and what else there is to do.
 std::string where_voids_pay(double radius, const PrintSettings& settings);
 
-// `outer`: the surface of `solid` without the voids. Nothing where the process prints no filament. Throws NothingToRemoveError if the print is described
-// and would become heavier, unless the options allow it; then it is a notice.
+// `outer`: the surface of `solid` without the voids. Nothing where the process prints no filament. Throws
+// NothingToRemoveError if the print is described and would become heavier, unless the options allow it; then it
+// is a notice.
 std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
                                              const HollowOptions& options, Monitor& monitor);
 
