@@ -13,7 +13,10 @@
 #include <vector>
 
 #include "check/crossings.h"
+#include "core/ceiling.h"
 #include "core/error.h"
+#include "core/upright.h"
+#include "kernels/constants.h"
 #include "mesh/outward_shells.h"
 #include "packing/cells/cell_drainage.h"
 #include "packing/drainage_refusals.h"
@@ -137,6 +140,44 @@ void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const Dra
   tell(request.hole_radius, "escape holes", "--hole-diameter");
 }
 
+// The ceiling of a tube and that of the void that it opens into may hang together, and are then wider than each is.
+// For each such ceiling the tube that opens nearest to it, seen from above.
+UncutTubes tubes_at_wide_ceilings(const Solid& solid, const DrainagePlan& plan, const Roof& roof,
+                                  double tolerance) {
+  UncutTubes found;
+  if (!roof.limits_ceilings()) return found;
+  const UprightFrame frame(roof.up);
+  const std::span<const Triangle> inner =
+      std::span(solid.mesh.triangles).subspan(solid.outer_triangle_count());
+  const double allowed = roof.bridge() + tolerance;
+  for (const Ceiling& ceiling : ceilings_of(solid.mesh, inner, roof)) {
+    if (ceiling.bound() <= allowed || widest_disc(ceiling, roof.bridge()) <= allowed) continue;
+    const auto distance_to = [&](const Tube& tube) {
+      double least = kInfinity;
+      for (const Vec3d end : {tube.start, tube.end}) {
+        const Vec3d at = frame.to_frame(end);
+        for (const auto& [a, b] : ceiling.rim) least = std::min(least, std::hypot(a.x - at.x, a.y - at.y));
+      }
+      return least;
+    };
+    double nearest = kInfinity;
+    UncutTubes tube;
+    for (std::size_t i = 0; i < plan.channels.size(); ++i) {
+      const double distance = distance_to(plan.channels[i].tube);
+      if (distance < nearest) tube = {{i}, {}};
+      nearest = std::min(nearest, distance);
+    }
+    for (std::size_t i = 0; i < plan.holes.size(); ++i) {
+      const double distance = distance_to(plan.holes[i].tube);
+      if (distance < nearest) tube = {{}, {i}};
+      nearest = std::min(nearest, distance);
+    }
+    found.windows.insert(found.windows.end(), tube.windows.begin(), tube.windows.end());
+    found.holes.insert(found.holes.end(), tube.holes.begin(), tube.holes.end());
+  }
+  return found;
+}
+
 }  // namespace
 
 std::size_t DrainedVoids::count_narrow_holes() const {
@@ -198,6 +239,10 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
     CellVoids kept{cells.planes, cells.lattice, cells.ball_radius, {}};
     for (const std::uint32_t i : planned.kept) kept.voids.push_back(cells.voids[i]);
     auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
+    if (const auto* solid = std::get_if<Solid>(&carved)) {
+      const UncutTubes widening = tubes_at_wide_ceilings(*solid, planned.plan, limits.roof, tolerance);
+      if (!widening.windows.empty() || !widening.holes.empty()) carved = widening;
+    }
     if (auto* solid = std::get_if<Solid>(&carved)) {
       DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
       tell_what_was_dropped(voids, cells.voids.size(), monitor);

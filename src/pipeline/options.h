@@ -37,6 +37,8 @@ struct PackingRequest {
 
   // The spheres' cells become voids, and get the roofs that the spheres then do without.
   bool is_for_cells = false;
+  // Of cells, their spheres' centres are so far from each other at least, mm.
+  std::optional<double> spacing;
 
   PackingLimits limits() const { return packing_limits(process); }
   // Of the spheres themselves.

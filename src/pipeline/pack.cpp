@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/overhang.h"
 #include "files/sphere_table.h"
+#include "packing/spread_out.h"
 #include "packing/verify.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
@@ -169,10 +170,19 @@ constexpr double kMostlyOverlapped = 0.5;
       fmt::format("give a --max-radius of about {:.2g} mm or less", fitting / 2));
 }
 
+// Centres of cells are so far from each other at least: nearly as far as those of the largest spheres are.
+double spacing_of_cells(const PackingLimits& limits) {
+  constexpr double kShare = 0.75;
+  return kShare * (2 * limits.max_radius + limits.gap);
+}
+
 }  // namespace
 
 PackingRequest sized_for(const PreparedModel& model, PackingRequest request, Monitor& monitor) {
   if (!request.is_for_cells || !request.spheres.empty() || request.method->on_lattice) return request;
+  // The largest few that were asked for are taken as they come, and so are all those from a given radius.
+  if (is_default(request.process, Limit::min_radius) && request.stop.max_count == PackingStop{}.max_count)
+    request.spacing = spacing_of_cells(request.limits());
   PackingStop first_alone = request.stop;
   first_alone.max_count = 1;
   first_alone.volume = model.inspection.filled_volume;
@@ -187,6 +197,7 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
   require_memory_for_packing(model.mesh, request);
   monitor.stage("pack");
   Packing packing = pack_unverified(model, request, monitor);
+  if (request.spacing) packing.spheres = spread_out(packing.spheres, *request.spacing);
   monitor.check_interrupted();
 
   monitor.stage("verify");

@@ -56,6 +56,10 @@ void require_printable(const ProcessChoice& choice, Limit limit, Limit least) {
 
 }  // namespace
 
+bool is_default(const ProcessChoice& choice, Limit limit) {
+  return choice.limits.at(limit).origin == default_of(choice.process);
+}
+
 bool is_process_file(const std::string& name_or_file) {
   return name_or_file.ends_with(".json") || name_or_file.find('/') != std::string::npos;
 }

@@ -58,6 +58,9 @@ ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_s
 // the user gave the least radius, it becomes half of the largest that there will be, `fitting` or the limit.
 ProcessChoice evenly_large(ProcessChoice choice, double fitting);
 
+// Whether a limit is what the process gives.
+bool is_default(const ProcessChoice& choice, Limit limit);
+
 // For voids that become modifiers, round which the slicer prints the walls it prints anyway: unless the user or a process
 // file gave the wall, it is as thick as these. What lies between would be filled by a strip of infill that carries nothing.
 ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& settings);
