@@ -50,6 +50,14 @@ bool makes_cells(const Process& process) {
   return process.drainage == Drainage::needed && !process.limits.contains(Limit::bridge);
 }
 
+// Round inner edges of voids that drain leave room for what runs along them; below roofs their faces are small, and
+// windows need what is flat of these. Millimetres.
+double default_fillet(const HollowOptions& options) {
+  if (!options.drainage) return CellOptions{}.fillet;
+  const bool has_roofs = options.packing.limits().roof.limits_ceilings();
+  return has_roofs ? options.drainage->channel_radius / 2 : options.drainage->channel_radius;
+}
+
 CellWords words_of_cells() {
   return {
       .shape =
@@ -58,7 +66,7 @@ CellWords words_of_cells() {
           "where voids drain and ceilings are not limited, which is " +
           processes_that(makes_cells) + "; unless there is --packing " + packings_on_a_lattice() +
           ", --spheres or --target-density; else spheres)",
-      .fillet = "the channels' radius, else 1",
+      .fillet = "the channels' radius, half of it where ceilings are limited, else 1",
       .tolerance = "Void surfaces stay this far inside their shapes at most (default 0.05, of cells 0.1)"};
 }
 
@@ -150,9 +158,8 @@ struct HollowCommand {
     } else {
       options = drainage.applied_to(std::move(options));
     }
-    ShapedRequest shaped =
-        cells.applied_to(options.packing, cells.asks_for_cells().value_or(is_cells_unasked(options)),
-                         options.drainage ? options.drainage->channel_radius : CellOptions{}.fillet);
+    ShapedRequest shaped = cells.applied_to(
+        options.packing, cells.asks_for_cells().value_or(is_cells_unasked(options)), default_fillet(options));
     options.packing = std::move(shaped.packing);
     options.cells = shaped.cells;
     options.tolerance = shaped.tolerance.value_or(options.tolerance);

@@ -180,8 +180,12 @@ double spacing_of_cells(const PackingLimits& limits) {
 
 PackingRequest sized_for(const PreparedModel& model, PackingRequest request, Monitor& monitor) {
   if (!request.is_for_cells || !request.spheres.empty() || request.method->on_lattice) return request;
-  // The largest few that were asked for are taken as they come, and so are all those from a given radius.
-  if (is_default(request.process, Limit::min_radius) && request.stop.max_count == PackingStop{}.max_count)
+  // The largest few that were asked for are taken as they come, and so are all those from a given radius, and the
+  // lattice whose cells carry their own ceilings, unless windows have to be found in these.
+  const bool is_sized =
+      !is_default(request.process, Limit::min_radius) || request.stop.max_count != PackingStop{}.max_count;
+  const bool drains = request.process.limits.contains(Limit::channel);
+  if (!is_sized && (drains || !request.limits().roof.limits_ceilings()))
     request.spacing = spacing_of_cells(request.limits());
   PackingStop first_alone = request.stop;
   first_alone.max_count = 1;

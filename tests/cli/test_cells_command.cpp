@@ -64,6 +64,30 @@ TEST(CellsCommand, SealedCellsAreShellsOfTheirOwn) {
   EXPECT_EQ(report["voids"]["tolerance_used_mm"], report["limits"].value("tolerance_mm", 0.1));
 }
 
+// In a bar no ball of more than 5 mm fits: of all the spheres that do there would be nine cells.
+TEST(CellsCommand, InnerWallsAreAsFarApartInASlenderPartAsElsewhere) {
+  const Job job;
+  const std::string bar = job.input("bar.stl", make_box({0, 0, 0}, {120, 14, 14}));
+  const Json spread = json_of(job.hollow(bar, {"--process", "sla", "--no-drain"}));
+  const Json all = json_of(job.hollow(bar, {"--process", "sla", "--no-drain", "--min-radius", "4"}));
+  EXPECT_LE(spread["voids"]["count"], 7);
+  EXPECT_GE(spread["voids"]["count"], 4);
+  EXPECT_GE(all["voids"]["count"], 9);
+  EXPECT_GT(removed_by(spread), removed_by(all));
+}
+
+// Windows need what is flat of the faces that roofs leave.
+TEST(CellsCommand, EdgesAreLessRoundedBelowRoofsThatDrain) {
+  const Job job;
+  const std::string cube = job.input("block.stl", make_box({0, 0, 0}, {40, 20, 20}));
+  const Json drained = json_of(job.hollow(cube, {"--process", "metal", "--shape", "cells"}));
+  EXPECT_NEAR(drained["voids"]["fillet_mm"].get<double>(), 0.7, 1e-9);
+  EXPECT_LE(drained["ceilings"]["widest_mm"].get<double>(), 2.1);
+  expect_sound(job, drained, 1);
+  const Json sealed = json_of(job.hollow(cube, {"--process", "metal", "--shape", "cells", "--no-drain"}));
+  EXPECT_NEAR(sealed["voids"]["fillet_mm"].get<double>(), 1, 1e-9);
+}
+
 // The report on modifiers of a block.
 Json modifiers_of(const std::vector<std::string>& options) {
   const Job job;
