@@ -130,9 +130,16 @@ class CellShaper {
   // are made; what is above the roof may be one of these.
   void add_below_roof(std::uint32_t cell, std::span<const CellPlane> planes, CellNodes& nodes,
                       const Opened& opened, std::vector<CellVoid>& voids) const {
-    // Of what a ceiling may be wide for the nodes, which tell only about where it ends: the surface is measured.
-    for (const double share : {1.0, 0.6, 0.0}) {
-      const std::optional<Roofed> roofed = put_roof(planes, nodes, opened, cell, share);
+    // The nodes tell only about where a ceiling ends, and the surface is measured: so narrower ceilings are tried, of
+    // those that stay without a roof, and then of the roof itself.
+    struct Narrowed {
+      double share, bridge;
+    };
+    for (const auto& [share, bridge] : {Narrowed{1, 1}, Narrowed{0.6, 1}, Narrowed{0, 1}, Narrowed{0.6, 0.8},
+                                        Narrowed{0, 0.8}, Narrowed{0, 0.5}}) {
+      Roof roof = packing_.limits.roof;
+      roof.widest_ball *= bridge;
+      const std::optional<Roofed> roofed = put_roof(planes, nodes, opened, cell, roof, share);
       if (!roofed) continue;
       const CellRegion region(roofed->planes, surface_, near_, packing_.limits.wall);
       const PieceSurface surface = surface_of(region, roofed->nodes, roofed->opened);
@@ -163,9 +170,9 @@ class CellShaper {
 
   // The room below one roof leaves one piece.
   std::optional<Roofed> put_roof(std::span<const CellPlane> planes, const CellNodes& nodes,
-                                 const Opened& opened, std::uint32_t cell, double share) const {
+                                 const Opened& opened, std::uint32_t cell, const Roof& roof,
+                                 double share) const {
     constexpr int kMostTries = 3;
-    const Roof& roof = packing_.limits.roof;
     Roofed roofed{{planes.begin(), planes.end()}, nodes, opened};
     std::vector<FlatCeiling> ceilings;
     for (int tries = 0; tries < kMostTries; ++tries) {

@@ -28,21 +28,21 @@ UsageError no_hole_leads_from(Vec3d place, const std::optional<Vec3d>& usable,
                               ", or leave --escape-hole out");
 }
 
-NothingToRemoveError nothing_is_opened(const DrainageRequest& request) {
+NothingToRemoveError nothing_is_opened(const DrainageRequest& request, const std::string& other_way) {
   return NothingToRemoveError(
       fmt::format("no place was found for two escape holes of {:g} mm, so no void can drain",
                   2 * request.hole_radius),
       request.escape_holes.empty()
-          ? "give " + narrower_holes(request) + ", larger voids, or places with --escape-hole"
+          ? "give " + narrower_holes(request) + ", larger voids, or places with --escape-hole" + other_way
           : "ask for other places, or leave --escape-hole out");
 }
 
-NothingToRemoveError all_stays_full(const DrainageRequest& request) {
+NothingToRemoveError all_stays_full(const DrainageRequest& request, const std::string& other_way) {
   return NothingToRemoveError(
       fmt::format("more than {:g} % of every group of voids would stay full, in print orientation and upside "
                   "down",
                   100 * kPoolsAimedAt),
-      "give other places with --escape-hole, " + narrower_holes(request) + ", or larger voids");
+      "give other places with --escape-hole, " + narrower_holes(request) + ", or larger voids" + other_way);
 }
 
 }  // namespace aerate

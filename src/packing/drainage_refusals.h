@@ -14,14 +14,14 @@ namespace aerate {
 std::string narrower_holes(const DrainageRequest& request);
 std::string narrower_channels();
 
-// No network has two holes.
-NothingToRemoveError nothing_is_opened(const DrainageRequest& request);
+// No network has two holes. `other_way`: what else the hint names, after a comma.
+NothingToRemoveError nothing_is_opened(const DrainageRequest& request, const std::string& other_way = {});
 
 // A hole that is asked for at a place cannot be made there. `usable`: the nearest place at which one can.
 UsageError no_hole_leads_from(Vec3d place, const std::optional<Vec3d>& usable,
                               const DrainageRequest& request);
 
 // All that was opened was left out again.
-NothingToRemoveError all_stays_full(const DrainageRequest& request);
+NothingToRemoveError all_stays_full(const DrainageRequest& request, const std::string& other_way = {});
 
 }  // namespace aerate

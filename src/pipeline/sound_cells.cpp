@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <fmt/format.h>
+#include <set>
 #include <tbb/parallel_for.h>
 #include <utility>
 #include <vector>
@@ -52,6 +54,18 @@ CellVoids shape_soundly(const SurfaceIndex& surface, const Packing& packing, con
   return cells;
 }
 
+void tell_of_solid_cells(const CellVoids& cells, const Packing& packing, const CellShape& shape,
+                         Monitor& monitor) {
+  std::set<std::uint32_t> made;
+  for (const CellVoid& piece : cells.voids) made.insert(piece.cell);
+  const std::size_t solid = packing.spheres.size() - made.size();
+  if (solid == 0) return;
+  monitor.notice(
+      fmt::format("{} of {} cells stay solid: no part of them takes a ball of --fillet {:g} mm{}", solid,
+                  packing.spheres.size(), shape.fillet,
+                  packing.limits.roof.limits_ceilings() ? " below a ceiling that can be bridged" : ""));
+}
+
 }  // namespace
 
 CellPlanes planes_of_cells(const PreparedModel& model, const Packing& packing, const DeviceRequest& device,
@@ -68,6 +82,7 @@ CellVoids shape_sound_cells(const PreparedModel& model, const SurfaceIndex& surf
     throw NothingToRemoveError(fmt::format("{}: nothing to remove: no cell takes a ball of --fillet {:g} mm",
                                            model.input.path.filename().string(), shape.fillet),
                                "give a smaller --fillet, or --shape spheres");
+  tell_of_solid_cells(cells, packing, shape, monitor);
   return cells;
 }
 

@@ -7,6 +7,13 @@
 #include "packing/drainage_refusals.h"
 
 namespace aerate {
+namespace {
+
+// Small voids with channels drain where few large ones with windows do not.
+constexpr const char* kOrSpheres = ", or --shape spheres";
+
+}  // namespace
+
 PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVoids& cells,
                                        const PackingLimits& limits, const DrainageRequest& request,
                                        const CanOpenCell& can_open, const CanOpenWall& can_open_wall,
@@ -16,14 +23,14 @@ PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVo
   CellDraft draft = begin_draft(task);
   draft = open_where_asked(task, std::move(draft));
   draft = open_and_join(task, std::move(draft));
-  if (draft.holes.empty()) throw nothing_is_opened(request);
+  if (draft.holes.empty()) throw nothing_is_opened(request, kOrSpheres);
   draft = add_windows_for_pools(task, std::move(draft));
   if (request.escape_holes.size() < 2) {
     draft = open_pools(task, std::move(draft));
     draft = add_windows_for_pools(task, std::move(draft));
   }
   draft = leave_out_pools(task, std::move(draft));
-  if (draft.holes.empty()) throw all_stays_full(request);
+  if (draft.holes.empty()) throw all_stays_full(request, kOrSpheres);
   return planned(task, draft);
 }
 
