@@ -54,6 +54,7 @@ std::vector<Vec3d> tube_section(const Tube& tube, const Roof& roof, std::size_t 
   }
   const TubeFrame frame = frame_of(tube, roof.up);
   std::vector<Vec3d> ring;
+  ring.reserve(angles.size());
   for (const double angle : angles)
     ring.push_back(tube.start - frame.down * (tube.radius * std::cos(angle)) -
                    frame.across * (tube.radius * std::sin(angle)));

@@ -56,6 +56,7 @@ std::vector<Sphere> spread_out(std::span<const Sphere> spheres, double spacing) 
   std::erase_if(order, [&](std::size_t i) { return !kept.add(spheres[i].centre); });
   std::ranges::sort(order);
   std::vector<Sphere> result;
+  result.reserve(order.size());
   for (const std::size_t i : order) result.push_back(spheres[i]);
   return result;
 }
