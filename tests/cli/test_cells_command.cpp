@@ -98,7 +98,7 @@ Json modifiers_of(const std::vector<std::string>& options) {
       AERATE_EXECUTABLE, "hollow", job.input("block.stl", block()), "-o", job.output("out.3mf"), "--as",
       "modifiers"};
   command.insert(command.end(), options.begin(), options.end());
-  const Json report = json_of(std::move(command));
+  Json report = json_of(std::move(command));
   EXPECT_EQ(read_bytes(job.output("out.3mf")).substr(0, 2), "PK");
   return report;
 }
