@@ -16,10 +16,11 @@ struct TopAngles {
 
 TopAngles top_angles(const Tube& tube, const Roof& roof) {
   TopAngles angles;
+  if (!roof.limits_ceilings()) return angles;
   const double width = ceiling_width(tube, roof);
-  if (!roof.limits_ceilings() || width == 0) return angles;
-  angles.ceiling = std::asin(std::min(1.0, width / (2 * tube.radius)));
-  angles.bridged = std::asin(std::min({1.0, width / (2 * tube.radius), roof.bridge() / (2 * tube.radius)}));
+  const auto at_width = [&](double wide) { return std::asin(std::min(1.0, wide / (2 * tube.radius))); };
+  angles.ceiling = at_width(width);
+  angles.bridged = at_width(std::min(width, roof.bridge()));
   return angles;
 }
 

@@ -268,9 +268,7 @@ std::string to_json(const HollowReport& report) {
       {"before_mm", json_of(output.centre_of_mass_before)},
       {"after_mm", report.modifiers ? Json(nullptr) : json_of(output.centre_of_mass_after)}};
   json["strength_and_balance"] =
-      report.modifiers
-          ? Json(nullptr)
-          : json_of(report.balance, output, report.cells ? kBlocksWithCells : kBlocksWithSpheres);
+      report.modifiers ? Json(nullptr) : json_of(report.balance, output, blocks_like(report));
   json["print"] = report.print ? json_of(*report.print) : Json(nullptr);
   json["material"] = material_of(report);
   add_closing(json, report.stages, report.notices);

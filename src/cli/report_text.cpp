@@ -8,7 +8,6 @@
 #include "core/printable.h"
 #include "pipeline/memory.h"
 #include "printing/slicers/slicers.h"
-#include "printing/strength.h"
 
 namespace aerate::cli {
 namespace {
@@ -115,7 +114,7 @@ std::string margin_in_words(double margin) {
 
 void add_balance(Lines& lines, const HollowReport& report) {
   const OutputFacts& output = report.output;
-  const ShareOfBound& blocks = report.cells ? kBlocksWithCells : kBlocksWithSpheres;
+  const ShareOfBound& blocks = blocks_like(report);
   lines.add(
       "strength",
       "{:.1f} % solid; stiffness about {:.0f} % (Hashin-Shtrikman bound, an estimate; blocks with {} had "

@@ -140,16 +140,33 @@ void warn_of_wide_tubes(const ProcessChoice& choice, const Roof& roof, const Dra
   tell(request.hole_radius, "escape holes", "--hole-diameter");
 }
 
+// Channels, then holes.
+std::vector<Tube> tubes_of(const DrainagePlan& plan) {
+  std::vector<Tube> tubes;
+  tubes.reserve(plan.channels.size() + plan.holes.size());
+  for (const Channel& channel : plan.channels) tubes.push_back(channel.tube);
+  for (const EscapeHole& hole : plan.holes) tubes.push_back(hole.tube);
+  return tubes;
+}
+
+std::vector<Tube> tubes_of(const UncutTubes& uncut, const DrainagePlan& plan) {
+  std::vector<Tube> tubes;
+  for (const std::size_t i : uncut.windows) tubes.push_back(plan.channels[i].tube);
+  for (const std::size_t i : uncut.holes) tubes.push_back(plan.holes[i].tube);
+  return tubes;
+}
+
 // The ceiling of a tube and that of the void that it opens into may hang together, and are then wider than each is.
 // For each such ceiling the tube that opens nearest to it, seen from above.
-UncutTubes tubes_at_wide_ceilings(const Solid& solid, const DrainagePlan& plan, const Roof& roof,
-                                  double tolerance) {
-  UncutTubes found;
+std::vector<Tube> tubes_at_wide_ceilings(const Solid& solid, const DrainagePlan& plan, const Roof& roof,
+                                         double tolerance) {
+  std::vector<Tube> found;
   if (!roof.limits_ceilings()) return found;
   const UprightFrame frame(roof.up);
   const std::span<const Triangle> inner =
       std::span(solid.mesh.triangles).subspan(solid.outer_triangle_count());
   const double allowed = roof.bridge() + tolerance;
+  const std::vector<Tube> tubes = tubes_of(plan);
   for (const Ceiling& ceiling : ceilings_of(solid.mesh, inner, roof)) {
     if (ceiling.bound() <= allowed || widest_disc(ceiling, roof.bridge()) <= allowed) continue;
     const auto distance_to = [&](const Tube& tube) {
@@ -160,20 +177,7 @@ UncutTubes tubes_at_wide_ceilings(const Solid& solid, const DrainagePlan& plan, 
       }
       return least;
     };
-    double nearest = kInfinity;
-    UncutTubes tube;
-    for (std::size_t i = 0; i < plan.channels.size(); ++i) {
-      const double distance = distance_to(plan.channels[i].tube);
-      if (distance < nearest) tube = {{i}, {}};
-      nearest = std::min(nearest, distance);
-    }
-    for (std::size_t i = 0; i < plan.holes.size(); ++i) {
-      const double distance = distance_to(plan.holes[i].tube);
-      if (distance < nearest) tube = {{}, {i}};
-      nearest = std::min(nearest, distance);
-    }
-    found.windows.insert(found.windows.end(), tube.windows.begin(), tube.windows.end());
-    found.holes.insert(found.holes.end(), tube.holes.begin(), tube.holes.end());
+    found.push_back(*std::ranges::min_element(tubes, {}, distance_to));
   }
   return found;
 }
@@ -239,26 +243,23 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
     CellVoids kept{cells.planes, cells.lattice, cells.ball_radius, {}};
     for (const std::uint32_t i : planned.kept) kept.voids.push_back(cells.voids[i]);
     auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
-    if (const auto* solid = std::get_if<Solid>(&carved)) {
-      const UncutTubes widening = tubes_at_wide_ceilings(*solid, planned.plan, limits.roof, tolerance);
-      if (!widening.windows.empty() || !widening.holes.empty()) carved = widening;
-    }
-    if (auto* solid = std::get_if<Solid>(&carved)) {
+    auto* solid = std::get_if<Solid>(&carved);
+    const std::vector<Tube> unfit = solid != nullptr
+                                        ? tubes_at_wide_ceilings(*solid, planned.plan, limits.roof, tolerance)
+                                        : tubes_of(std::get<UncutTubes>(carved), planned.plan);
+    if (unfit.empty()) {
       DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
       tell_what_was_dropped(voids, cells.voids.size(), monitor);
       return {std::move(kept), std::move(voids), std::move(*solid)};
     }
-    const auto& uncut = std::get<UncutTubes>(carved);
-    const auto refuse = [&](const Tube& tube) {
+    for (const Tube& tube : unfit) {
       if (refused.size() >= kMostRefused)
         throw FailureError(
             fmt::format("the surfaces at a tube near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut", tube.start.x,
                         tube.start.y, tube.start.z),
             "raise --tolerance, or give another --channel-diameter or --hole-diameter");
       refused.push_back(tube);
-    };
-    for (const std::size_t i : uncut.windows) refuse(planned.plan.channels[i].tube);
-    for (const std::size_t i : uncut.holes) refuse(planned.plan.holes[i].tube);
+    }
   }
 }
 

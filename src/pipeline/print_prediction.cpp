@@ -1,12 +1,14 @@
 #include "pipeline/print_prediction.h"
 
 #include <cmath>
+#include <cstddef>
 #include <fmt/format.h>
 #include <span>
 #include <string>
 
 #include "core/error.h"
 #include "core/upright.h"
+#include "printing/slicers/object_parts.h"
 
 namespace aerate {
 namespace {
@@ -70,14 +72,26 @@ PrintSettings settings_of(const HollowOptions& options) {
   return settings;
 }
 
-// The voids by themselves, as solids.
+// The voids by themselves, as bodies.
 Mesh voids_of(const Solid& solid) {
-  Mesh mesh;
-  mesh.positions = solid.mesh.positions;
-  for (const SolidPart& part : solid.of(PartKind::void_surface))
-    for (const Triangle& triangle : triangles_of(solid.mesh, part))
-      mesh.triangles.push_back({triangle[0], triangle[2], triangle[1]});
+  Mesh mesh = with_void_shells_turned(solid.mesh, solid);
+  const auto outer = static_cast<std::ptrdiff_t>(solid.outer_triangle_count());
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + outer);
   return mesh;
+}
+
+// A mesh as it is printed: itself, or turned into `turned`.
+const Mesh& upright(const Mesh& mesh, const UprightFrame& frame, Mesh& turned) {
+  if (frame.is_the_models_own()) return mesh;
+  turned = turned_upright(mesh, frame);
+  return turned;
+}
+
+FilamentUse use_with_voids(const Mesh& outer, const Solid& solid, const UprightFrame& frame,
+                           const HollowOptions& options, const PrintSettings& settings) {
+  Mesh turned;
+  if (!options.modifiers) return filament_use(upright(solid.mesh, frame, turned), settings);
+  return filament_use(outer, settings, kFilamentPixel, upright(voids_of(solid), frame, turned));
 }
 
 std::string what_else(const PrintPrediction& prediction, const HollowOptions& options) {
@@ -85,8 +99,7 @@ std::string what_else(const PrintPrediction& prediction, const HollowOptions& op
     return fmt::format("these voids {}; {}", saving_infill(prediction.break_even_infill), kOtherWays);
   return fmt::format(
       "infill is joined along the border of modifiers, which costs more than these save: they {}; larger "
-      "ones "
-      "(--shape cells, --min-radius, --max-radius) or {} cost less; --force writes these all the same",
+      "ones (--shape cells, --min-radius, --max-radius) or {} cost less; --force writes these all the same",
       saving_infill(prediction.break_even_infill),
       options.modifiers->infill_percent > 0 ? "a lower --modifier-infill" : "a thinner --wall");
 }
@@ -128,14 +141,11 @@ std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& sol
   prediction.settings = settings_of(options);
   const PrintSettings& settings = prediction.settings;
   const UprightFrame frame(packing.limits.roof.up);
-  const auto upright = [&](const Mesh& mesh) {
-    return frame.is_the_models_own() ? mesh : turned_upright(mesh, frame);
-  };
-  const FilamentUse whole = filament_use(upright(outer), settings);
+  Mesh turned;
+  const Mesh& printed = upright(outer, frame, turned);
+  const FilamentUse whole = filament_use(printed, settings);
   monitor.check_interrupted();
-  const FilamentUse hollow =
-      options.modifiers ? filament_use(upright(outer), settings, kFilamentPixel, upright(voids_of(solid)))
-                        : filament_use(upright(solid.mesh), settings);
+  const FilamentUse hollow = use_with_voids(printed, solid, frame, options, settings);
   monitor.check_interrupted();
   prediction.filament_before_mm3 = whole.volume_mm3(settings);
   prediction.filament_after_mm3 = hollow.volume_mm3(settings);

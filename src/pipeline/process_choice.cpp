@@ -100,7 +100,7 @@ ProcessChoice limits_under(const Process& process, const Limits& given, ProcessC
 ProcessChoice kept_to_balls_without_roofs(ProcessChoice choice) {
   const PackingLimits limits = packing_limits(choice);
   LimitValue& largest = choice.limits.at(Limit::max_radius);
-  if (limits.roof.shapes(limits.max_radius) && largest.origin == default_of(choice.process))
+  if (limits.roof.shapes(limits.max_radius) && is_default(choice, Limit::max_radius))
     largest = {largest_without_roof(limits.roof), "", "the largest of a lattice that need no roof"};
   return choice;
 }
@@ -109,7 +109,7 @@ ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_s
   constexpr double kLargestUnasked = 10;  // mm
   LimitValue& largest = choice.limits.at(Limit::max_radius);
   LimitValue& least = choice.limits.at(Limit::min_radius);
-  const bool is_given = largest.origin != default_of(choice.process);
+  const bool is_given = !is_default(choice, Limit::max_radius);
   if (cell_size) {
     const double radius = (*cell_size - choice.limits.at(Limit::gap).value) / 2;
     if (is_given) throw UsageError("--cell-size and --max-radius say the same", "leave out one of them");
@@ -121,7 +121,7 @@ ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_s
     largest = {std::max(kLargestUnasked, least.value), "", "of cells, unless --cell-size says otherwise"};
   }
   if (least.value > largest.value) {
-    if (least.origin != default_of(choice.process))
+    if (!is_default(choice, Limit::min_radius))
       throw UsageError(fmt::format("--min-radius {:g} mm is more than the {:g} mm of cells of this size",
                                    least.value, largest.value),
                        "give a smaller --min-radius or a larger --cell-size");
@@ -131,21 +131,20 @@ ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_s
 }
 
 ProcessChoice evenly_large(ProcessChoice choice, double fitting) {
+  if (!is_default(choice, Limit::min_radius)) return choice;
   LimitValue& least = choice.limits.at(Limit::min_radius);
-  if (least.origin != default_of(choice.process)) return choice;
   const double half = std::min(fitting, choice.limits.at(Limit::max_radius).value) / 2;
   if (half > least.value) least = {half, "", "half of the largest, for cells"};
   return choice;
 }
 
 ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& settings) {
-  LimitValue& wall = choice.limits.at(Limit::wall);
   const Process& process = choice.process;
   if (process.drainage == Drainage::needed || find_process(process.name) == nullptr ||
-      wall.origin != default_of(process))
+      !is_default(choice, Limit::wall))
     return choice;
-  wall = {std::max(1, settings.perimeters) * settings.line_width, "docs/slicers.md",
-          "perimeters, for modifiers"};
+  choice.limits.at(Limit::wall) = {std::max(1, settings.perimeters) * settings.line_width, "docs/slicers.md",
+                                   "perimeters, for modifiers"};
   return choice;
 }
 
@@ -187,11 +186,11 @@ PackingLimits packing_limits(const ProcessChoice& choice) {
 
 DrainageRequest drainage_request(const ProcessChoice& choice, std::vector<Vec3d> escape_holes) {
   const double channel = choice.limits.at(Limit::channel).value;
-  const LimitValue& hole = choice.limits.at(Limit::escape_hole);
+  const double hole = choice.limits.at(Limit::escape_hole).value;
   // What leaves by a hole came through channels, so one as wide as these will do where the usual width does not fit.
-  const bool may_be_narrower = hole.origin == default_of(choice.process) && hole.value > channel;
+  const bool may_be_narrower = is_default(choice, Limit::escape_hole) && hole > channel;
   return {.channel_radius = channel / 2,
-          .hole_radius = hole.value / 2,
+          .hole_radius = hole / 2,
           .narrow_hole_radius = may_be_narrower ? channel / 2 : 0,
           .escape_holes = std::move(escape_holes)};
 }

@@ -4,6 +4,10 @@
 
 namespace aerate {
 
+const ShareOfBound& blocks_like(const HollowReport& report) {
+  return report.cells ? kBlocksWithCells : kBlocksWithSpheres;
+}
+
 MaterialUse material_use(const HollowReport& report) {
   const double grams_per_mm3 = report.material.density_g_cm3 / 1000;
   const double price_per_gram = report.material.price_per_kg / 1000;

@@ -15,6 +15,7 @@
 #include "pipeline/input_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
+#include "printing/strength.h"
 
 namespace aerate {
 
@@ -76,6 +77,9 @@ struct MaterialUse {
   double cost_after = 0;
 };
 MaterialUse material_use(const HollowReport& report);
+
+// How stiff blocks with such voids were.
+const ShareOfBound& blocks_like(const HollowReport& report);
 
 // All stages together: the times added, the largest peak.
 StageCost total_of(const std::vector<StageCost>& stages);

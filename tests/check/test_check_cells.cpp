@@ -58,21 +58,26 @@ class CheckCells : public testing::Test {
  protected:
   explicit CheckCells(Sound sound, bool drains) : sound_(std::move(sound)), drains_(drains) {}
 
+  template <typename Check>
+  auto held_against_expected(const Check& check) const {
+    const SurfaceIndex surface(sound_.model);
+    const Inspection inspection = inspect(sound_.model);
+    return check(Expected{.solid = sound_.solid,
+                          .model = sound_.model,
+                          .surface = surface,
+                          .inspection = inspection,
+                          .packing = sound_.packing,
+                          .cells = &sound_.cells,
+                          .drainage = drains_ ? &sound_.plan : nullptr,
+                          .tolerance = tolerance_});
+  }
   OutputFacts check(const Mesh& written) const {
     Monitor silent;
     return check(written, silent);
   }
   OutputFacts check(const Mesh& written, Monitor& monitor) const {
-    return check_written(written,
-                         {.solid = sound_.solid,
-                          .model = sound_.model,
-                          .surface = SurfaceIndex(sound_.model),
-                          .inspection = inspect(sound_.model),
-                          .packing = sound_.packing,
-                          .cells = &sound_.cells,
-                          .drainage = drains_ ? &sound_.plan : nullptr,
-                          .tolerance = tolerance_},
-                         monitor);
+    return held_against_expected(
+        [&](const Expected& expected) { return check_written(written, expected, monitor); });
   }
   OutputFacts check() const { return check(as_read_back(mesh())); }
   void expect_found(const std::string& said) const {
@@ -225,16 +230,8 @@ class CheckPieces : public CheckSealedCells {
   CheckPieces() { sound_.solid = carve_cells({}, sound_.cells); }
   PieceFacts check_alone(const Mesh& written) const {
     Monitor silent;
-    return check_pieces(written,
-                        {.solid = sound_.solid,
-                         .model = sound_.model,
-                         .surface = SurfaceIndex(sound_.model),
-                         .inspection = inspect(sound_.model),
-                         .packing = sound_.packing,
-                         .cells = &sound_.cells,
-                         .drainage = nullptr,
-                         .tolerance = tolerance_},
-                        silent);
+    return held_against_expected(
+        [&](const Expected& expected) { return check_pieces(written, expected, silent); });
   }
   void expect_found_alone(const std::string& said) const {
     EXPECT_TRUE(contains(message_of<FailureError>([&] { check_alone(as_read_back(mesh())); }), said));

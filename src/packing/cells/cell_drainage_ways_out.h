@@ -40,7 +40,7 @@ double lean_of(Vec3d direction, Vec3d up);
 // A tube starts in its void, just before its side leaves it, and ends where its axis meets the model's
 // surface. The whole side leaves the void's surface and the model's once, at 30 degrees or more, and in this
 // order: a plane across the axis parts the two rims. It keeps the wall from the model's surface elsewhere,
-// the gap from other voids, leads out of every shell, and the printer bridges it.
+// the gap from other voids, and leads out of every shell.
 class WaysOut {
  public:
   // `outward`: see DrainableModel. `hollows`: by void.

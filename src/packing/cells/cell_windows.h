@@ -30,8 +30,7 @@ struct CellWindow {
 // Places for windows of `radius` between any two voids (indices into cells.voids, the lower one first): for
 // each pair up to six, apart from each other, the lowest and the highest along `limits.roof.up` and one in
 // the middle first. Each lies with a margin in the flat part of both faces, exactly; keeps the wall from the
-// model's surface, the gap from other voids; and the printer bridges it. `hollows` by void. In order of
-// pairs.
+// model's surface, and the gap from other voids. `hollows` by void. In order of pairs.
 std::vector<CellWindow> find_cell_windows(const CellVoids& cells, const std::vector<VoidHollows>& hollows,
                                           const PackingLimits& limits, double radius,
                                           const CellSurfaces& surfaces, Monitor& monitor);
