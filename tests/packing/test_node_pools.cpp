@@ -63,7 +63,7 @@ TEST(NodePools, AreThoseOfBruteForceInAnyShape) {
     VoidNodes nodes = nodes_of(blob, kLattice, 0);
     const Vec3d up = shape % 3 == 0 ? Vec3d{0, 0, 1} : shape % 3 == 1 ? Vec3d{1, 0, 0} : Vec3d{0, -1, 0};
     const auto count = static_cast<double>(nodes.size());
-    const std::vector<VoidHollows> hollows{VoidHollows(nodes, up, count)};
+    const std::vector<VoidHollows> hollows{VoidHollows(nodes, up, count, Mesh{})};
     const CellPools pools(hollows);
     for (const std::size_t orientation : {kUpright, kUpsideDown}) {
       const auto outlet = static_cast<std::uint32_t>(share(random) * (count - 1));
@@ -90,10 +90,35 @@ TEST(NodePools, KeepVolumeAndConnectionWhenNodesArePutTogether) {
   for (const std::uint16_t weight : coarse.weights) sum += weight;
   EXPECT_EQ(sum, fine.size());
   EXPECT_EQ(coarse.size() * 8, fine.size());
-  const VoidHollows hollows(coarse, {0, 0, 1}, 350);
+  const VoidHollows hollows(coarse, {0, 0, 1}, 350, Mesh{});
   ASSERT_EQ(hollows.in(kUpright).size(), 1U);
   EXPECT_NEAR(piece_below(hollows.pieces()[0], kUpright, 4), 10 * 7 * 2, 1e-9);
   EXPECT_NEAR(piece_below(hollows.pieces()[0], kUpsideDown, -4), 10 * 7 * 3, 1e-9);
+}
+
+// Floors and ceilings are where the surface is, wherever the nodes lie below and above it, for any axis that is up.
+TEST(NodePools, BeginAtTheFloorOfTheSurface) {
+  for (const double off : {0.05, 0.2, 0.3, 0.45}) {
+    const CellVoid box = box_void(0, {{2 + off, 2 + off, 2 + off}, {12.4, 9.4, 7.4}});
+    const Vec3d size{10.4 - off, 7.4 - off, 5.4 - off};
+    const double volume = size.x * size.y * size.z;
+    const auto pieces_along = [&](Vec3d up) {
+      const VoidHollows hollows(nodes_of(box, kLattice, 0), up, volume, box.surface);
+      EXPECT_EQ(hollows.pieces().size(), 1U);
+      return hollows.pieces()[0];
+    };
+    // Spans are kept in steps of 1/64 of a spacing.
+    const double step = kSpacing / 64;
+    const VoidHollows::Piece z = pieces_along({0, 0, 1}), x = pieces_along({1, 0, 0}),
+                             turned = pieces_along({0, -1, 0});
+    EXPECT_NEAR(piece_below(z, kUpright, 2 + off), 0, step * size.x * size.y) << off;
+    EXPECT_NEAR(piece_below(z, kUpright, 5), size.x * size.y * (3 - off), step * size.x * size.y) << off;
+    EXPECT_NEAR(piece_below(z, kUpsideDown, -7.4), 0, step * size.x * size.y) << off;
+    EXPECT_NEAR(piece_below(x, kUpright, 2 + off), 0, step * size.y * size.z) << off;
+    EXPECT_NEAR(piece_below(x, kUpsideDown, -7), 5.4 * size.y * size.z, step * size.y * size.z) << off;
+    EXPECT_NEAR(piece_below(turned, kUpright, -9.4), 0, step * size.x * size.z) << off;
+    EXPECT_NEAR(piece_below(turned, kUpright, -5), 4.4 * size.x * size.z, step * size.x * size.z) << off;
+  }
 }
 
 // Two feet below a block: each is a hollow of its own, and what runs out of one leaves the other full.
@@ -103,7 +128,7 @@ TEST(NodePools, OfTwoFeetAreCountedOneByOne) {
   feet.nodes = runs_where({{2, 2, 2}, {32, 12, 17}},
                           [&](Vec3d p) { return body.holds(p) || left.holds(p) || right.holds(p); });
   const double volume = 30 * 10 * 10 + 8 * 10 * 5 + 10 * 10 * 3;
-  const std::vector<VoidHollows> hollows{VoidHollows(nodes_of(feet, kLattice, 0), {0, 0, 1}, volume)};
+  const std::vector<VoidHollows> hollows{VoidHollows(nodes_of(feet, kLattice, 0), {0, 0, 1}, volume, Mesh{})};
   ASSERT_EQ(hollows[0].in(kUpright).size(), 3U);
   EXPECT_EQ(hollows[0].in(kUpsideDown).size(), 1U);
   const CellPools pools(hollows);

@@ -37,7 +37,8 @@ std::vector<VoidHollows> hollows_of(const CellVoids& cells, Vec3d up, Monitor& m
   monitor.check_interrupted();
   tbb::parallel_for(std::size_t{0}, grown.size(), [&](std::size_t i) {
     const CellVoid& one = cells.voids[i];
-    grown[i].emplace(nodes_of(one, cells.lattice, halvings), up, std::abs(signed_volume(one.surface)));
+    grown[i].emplace(nodes_of(one, cells.lattice, halvings), up, std::abs(signed_volume(one.surface)),
+                     one.surface);
   });
   monitor.check_interrupted();
   std::vector<VoidHollows> hollows;

@@ -8,6 +8,7 @@
 
 #include "kernels/constants.h"
 #include "packing/cells/cell_drainage_hollows.h"
+#include "packing/cells/node_spans.h"
 
 namespace aerate {
 namespace {
@@ -71,6 +72,44 @@ Hollows hollows_of(HollowForest forest, double base, double spacing) {
   return hollows;
 }
 
+// The volume of nodes by height, in levels, while they are added from the lowest up.
+class LayeredVolume {
+ public:
+  explicit LayeredVolume(std::int32_t lowest) : first_(lowest - kLevelsPerSpacing) {}
+
+  // A node at a level stands for so many levels below and above it: a spacing at most.
+  void add(std::int32_t level, double below, double above, double weight) {
+    const auto begin = static_cast<std::size_t>(level - first_ - std::lround(below));
+    const std::size_t end =
+        std::max(begin + 1, static_cast<std::size_t>(level - first_ + std::lround(above)));
+    if (end >= steeper_.size()) steeper_.resize(end + 1, 0);
+    const double held = weight * static_cast<double>(end - begin);
+    steeper_[begin] += weight;
+    steeper_[end] -= weight;
+    sum_ += held;
+  }
+
+  double sum() const { return sum_; }
+
+  // Gives a piece its heights and volumes; `unit`: mm3 for each of sum().
+  void spread(VoidHollows::Piece& piece, double base, double step, double unit) const {
+    double slope = 0, below = 0;
+    for (std::size_t i = 0; i < steeper_.size(); ++i) {
+      if (steeper_[i] != 0) {
+        piece.heights.push_back(base + step * static_cast<double>(first_ + static_cast<std::int64_t>(i)));
+        piece.volumes.push_back(unit * below);
+        slope += steeper_[i];
+      }
+      below += slope;
+    }
+  }
+
+ private:
+  std::int32_t first_;
+  std::vector<double> steeper_;  // by level: how much more there is in each level from here on
+  double sum_ = 0;
+};
+
 }  // namespace
 
 Vec3d VoidNodes::at(std::uint32_t node) const {
@@ -113,7 +152,7 @@ VoidNodes nodes_of(const CellVoid& cell_void, const NodeLattice& lattice, int ha
   return nodes;
 }
 
-VoidHollows::VoidHollows(VoidNodes nodes, Vec3d up, double volume)
+VoidHollows::VoidHollows(VoidNodes nodes, Vec3d up, double volume, const Mesh& surface)
     : nodes_(std::move(nodes)), up_(up), volume_(volume) {
   const NodeLevels levels(nodes_, up);
   const double step = nodes_.lattice.spacing / kLevelsPerSpacing;
@@ -122,11 +161,9 @@ VoidHollows::VoidHollows(VoidNodes nodes, Vec3d up, double volume)
   HollowForest upright = grow_hollows(nodes_, links, levels, kUpright);
   HollowForest turned = grow_hollows(nodes_, links, levels, kUpsideDown);
 
+  std::vector<LayeredVolume> layered;
   std::vector<std::vector<std::uint32_t>> pieces_of(upright.parent.size());
-  double nodes_in_all = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    nodes_in_all += nodes_.weights.empty() ? 1 : nodes_.weights[i];
-  const double share = nodes_in_all > 0 ? volume / nodes_in_all : 0;
+  const NodeSpans spans = spans_of(nodes_, surface, up);
   for (const std::uint32_t node : levels.ascending()) {
     const std::uint32_t a = upright.of_node[node], b = turned.of_node[node];
     std::vector<std::uint32_t>& own = pieces_of[a];
@@ -135,19 +172,17 @@ VoidHollows::VoidHollows(VoidNodes nodes, Vec3d up, double volume)
     const auto number = found == own.end() ? static_cast<std::uint32_t>(pieces_.size()) : *found;
     if (number == pieces_.size()) {
       own.push_back(number);
-      pieces_.push_back({a, b, nodes_.lattice.spacing, {}, {}, {}});
+      pieces_.push_back({a, b, {}, {}});
+      layered.emplace_back(levels.of(node));
     }
-    Piece& piece = pieces_[number];
-    const double height = base + step * static_cast<double>(levels.of(node));
-    const double held = share * (nodes_.weights.empty() ? 1 : nodes_.weights[node]);
-    if (piece.heights.empty() || piece.heights.back() < height) {
-      piece.volumes.push_back(piece.volume());
-      piece.moments.push_back(piece.moments.empty() ? 0 : piece.moments.back());
-      piece.heights.push_back(height);
-    }
-    piece.volumes.back() += held;
-    piece.moments.back() += held * height;
+    const double below = spans.below[node], above = spans.above[node];
+    layered[number].add(levels.of(node), below / step, above / step,
+                        nodes_.weights.empty() ? 1 : nodes_.weights[node]);
   }
+  double sum = 0;
+  for (const LayeredVolume& own : layered) sum += own.sum();
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    layered[i].spread(pieces_[i], base, step, sum > 0 ? volume / sum : 0);
   hollows_[kUpright] = hollows_of(std::move(upright), base, nodes_.lattice.spacing);
   hollows_[kUpsideDown] = hollows_of(std::move(turned), -base, nodes_.lattice.spacing);
 }
@@ -201,18 +236,12 @@ double piece_below(const VoidHollows::Piece& piece, std::size_t orientation, dou
   if (height == kInfinity) return piece.volume();
   if (height == -kInfinity) return 0;
   if (orientation == kUpsideDown) return piece.volume() - piece_below(piece, kUpright, -height);
-  // Volume, and its moment, of the nodes up to some height.
-  const auto up_to = [&](double limit) {
-    const std::vector<double>& heights = piece.heights;
-    const auto count =
-        static_cast<std::size_t>(std::upper_bound(heights.begin(), heights.end(), limit) - heights.begin());
-    return count == 0 ? std::pair(0.0, 0.0) : std::pair(piece.volumes[count - 1], piece.moments[count - 1]);
-  };
-  const auto [full, full_moment] = up_to(height - piece.thickness / 2);
-  const auto [touched, touched_moment] = up_to(height + piece.thickness / 2);
-  const double partly =
-      (touched - full) * (height / piece.thickness + 0.5) - (touched_moment - full_moment) / piece.thickness;
-  return full + std::clamp(partly, 0.0, touched - full);
+  const auto above = std::upper_bound(piece.heights.begin(), piece.heights.end(), height);
+  if (above == piece.heights.begin()) return 0;
+  if (above == piece.heights.end()) return piece.volume();
+  const auto i = static_cast<std::size_t>(above - piece.heights.begin());
+  const double share = (height - piece.heights[i - 1]) / (piece.heights[i] - piece.heights[i - 1]);
+  return piece.volumes[i - 1] + share * (piece.volumes[i] - piece.volumes[i - 1]);
 }
 
 }  // namespace aerate

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cells.h"
+#include "core/mesh.h"
 #include "core/segment_distance.h"
 
 // Where liquid can stand in a void of any shape, counted on the nodes of a lattice.
@@ -55,16 +56,14 @@ class VoidHollows {
   // Nodes that are in the same hollows in both orientations.
   struct Piece {
     std::uint32_t upright, upside_down;
-    double thickness;             // of the layer that each node stands for: a spacing
     std::vector<double> heights;  // upright, ascending
-    std::vector<double> volumes;  // of the nodes up to that height
-    std::vector<double> moments;  // of these volumes by height
+    std::vector<double> volumes;  // below that height, mm3; even in between
     double volume() const { return volumes.empty() ? 0 : volumes.back(); }
   };
 
-  // `up`: unit, against gravity in print orientation. `volume` (mm3) is shared by the nodes evenly. O(n) in
-  // nodes.
-  VoidHollows(VoidNodes nodes, Vec3d up, double volume);
+  // `up`: unit, against gravity in print orientation. `volume` (mm3) is shared by the nodes by the heights that they stand
+  // for: floors and ceilings are then where `surface` has them, which faces into the void. O(n) in nodes.
+  VoidHollows(VoidNodes nodes, Vec3d up, double volume, const Mesh& surface);
 
   const VoidNodes& nodes() const { return nodes_; }
   const Hollows& in(std::size_t orientation) const { return hollows_[orientation]; }
@@ -87,8 +86,8 @@ class VoidHollows {
   std::vector<Piece> pieces_;
 };
 
-// What of a piece is below a height along the orientation's up, mm3. Each node's share is spread evenly over
-// a spacing of height about it.
+// What of a piece is below a height along the orientation's up, mm3. Each node's share is spread evenly over the height that
+// it stands for (packing/cells/node_spans.h).
 double piece_below(const VoidHollows::Piece& piece, std::size_t orientation, double height);
 
 }  // namespace aerate
