@@ -29,6 +29,8 @@ class CellCommandOptions {
 
   // Whether --shape says cells; nothing where it is not given.
   std::optional<bool> asks_for_cells() const;
+  // Whether --cell-size or --fillet is given.
+  bool says_how_cells_are() const { return cell_size_ || fillet_; }
   // Throws UsageError for --fillet and --tolerance, of which `why` says why they have no effect.
   void require_neither_fillet_nor_tolerance(const std::string& where, const std::string& why) const;
   // The request for cells or for spheres. Throws UsageError for options of cells that spheres do not have, and for

@@ -65,7 +65,9 @@ CellWords words_of_cells() {
           "thick as --gap and take nearly all that is deeper than --wall (default cells for modifiers, and "
           "where voids drain and ceilings are not limited, which is " +
           processes_that(makes_cells) + "; unless there is --packing " + packings_on_a_lattice() +
-          ", --spheres or --target-density; else spheres)",
+          ", --spheres or --target-density; else spheres. With --infill both are tried and the one that "
+          "takes less "
+          "filament is made; the other is, too, where voids cannot be drained)",
       .fillet = "the channels' radius, half of it where ceilings are limited, else 1",
       .tolerance = "Void surfaces stay this far inside their shapes at most (default 0.05, of cells 0.1)"};
 }
@@ -134,7 +136,8 @@ struct HollowCommand {
         ->type_name("PRICE");
   }
 
-  HollowOptions to_pipeline() const {
+  // But for the shape of voids.
+  HollowOptions unshaped() const {
     HollowOptions options;
     options.model = model.path;
     options.output = output;
@@ -158,34 +161,57 @@ struct HollowCommand {
     } else {
       options = drainage.applied_to(std::move(options));
     }
-    ShapedRequest shaped = cells.applied_to(
-        options.packing, cells.asks_for_cells().value_or(is_cells_unasked(options)), default_fillet(options));
-    options.packing = std::move(shaped.packing);
-    options.cells = shaped.cells;
-    options.tolerance = shaped.tolerance.value_or(options.tolerance);
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
     options.material = choose_material(material.empty() ? options.packing.process.process.material : material,
                                        density, price);
     options.heavier = print.heavier();
+    return options;
+  }
+
+  HollowOptions shaped(HollowOptions options, bool makes_cells) const {
+    ShapedRequest shaped = cells.applied_to(options.packing, makes_cells, default_fillet(options));
+    options.packing = std::move(shaped.packing);
+    options.cells = shaped.cells;
+    options.tolerance = shaped.tolerance.value_or(options.tolerance);
     require_tolerance_for(options.packing.limits(), options.tolerance);
     return options;
   }
 
+  // The preferred one first. Unless it was said what voids are, there is another where it can be told which is better.
+  std::vector<HollowOptions> forms() const {
+    const HollowOptions options = unshaped();
+    const std::optional<bool> asked = cells.asks_for_cells();
+    const bool makes_cells = asked.value_or(is_cells_unasked(options));
+    std::vector<HollowOptions> forms{shaped(options, makes_cells)};
+    const bool can_compare = options.drainage || options.print;
+    if (asked || cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
+    try {
+      forms.push_back(shaped(options, !makes_cells));
+    } catch (const UsageError&) {
+      // These options leave no choice.
+    }
+    return forms;
+  }
+
+  static bool may_be_cells(const HollowOptions& options) {
+    const PackingRequest& request = options.packing;
+    return !request.method->on_lattice && request.spheres.empty() && request.stop.target_density >= 1;
+  }
+
   // Whether voids are cells, if --shape does not say.
   static bool is_cells_unasked(const HollowOptions& options) {
-    const PackingRequest& request = options.packing;
-    if (request.method->on_lattice || !request.spheres.empty() || request.stop.target_density < 1)
-      return false;
+    if (!may_be_cells(options)) return false;
     if (options.modifiers) return true;
+    const PackingRequest& request = options.packing;
     const PackingLimits limits = request.limits();
     return request.process.process.drainage == Drainage::needed && !limits.roof.shapes(limits.max_radius);
   }
 
   void run() const {
-    const HollowOptions options = to_pipeline();
-    JobFiles files{packing.inputs(model.path), {options.output}};
+    const std::vector<HollowOptions> options = forms();
+    JobFiles files{packing.inputs(model.path), {output}};
     files.inputs.push_back({"list of spheres", spheres});
     run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
   }

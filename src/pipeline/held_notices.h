@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/monitor.h"
@@ -23,9 +24,10 @@ class HeldNotices final : public Monitor {
   void temporary_file_gone(const std::filesystem::path& path) override { inner_.temporary_file_gone(path); }
 
   void pass_on() {
-    for (const std::string& text : notices_) inner_.notice(text);
-    notices_.clear();
+    for (const std::string& text : take()) inner_.notice(text);
   }
+  // What was kept back, for who knows only later whether it holds.
+  std::vector<std::string> take() { return std::exchange(notices_, {}); }
 
  private:
   Monitor& inner_;

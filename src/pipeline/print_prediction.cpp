@@ -117,7 +117,12 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
   const PrintSettings& settings = *options.print;
   const PackingLimits limits = request.limits();
   const auto least_radius = break_even_radius(settings);
-  if (!least_radius || *least_radius > limits.max_radius) refuse_all(limits, settings, least_radius);
+  // A cell about a sphere has as much wall for its volume as the sphere itself, but reaches further. Whether all of them
+  // together save is for the prediction.
+  constexpr double kCellsReach = 1.5;
+  const double largest = (options.cells ? kCellsReach : 1) * limits.max_radius;
+  if (!least_radius || *least_radius > largest) refuse_all(limits, settings, least_radius);
+  if (options.cells) return request;
   const double raised = rounded_up(*least_radius);
   if (raised <= limits.min_radius) return request;
   monitor.notice(fmt::format(

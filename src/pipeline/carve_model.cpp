@@ -1,0 +1,103 @@
+#include "pipeline/carve_model.h"
+
+#include <fmt/format.h>
+#include <optional>
+#include <utility>
+
+#include "pipeline/budget.h"
+#include "pipeline/carve_as_cells.h"
+#include "pipeline/pack.h"
+#include "pipeline/print_prediction.h"
+#include "printing/carve.h"
+
+namespace aerate {
+namespace {
+
+// Refuses what cannot be made before the long stages, and says what sealed voids would mean.
+PackingRequest request_of(const HollowOptions& options, Monitor& monitor) {
+  // Modifiers have no walls to pay for, and leave the model solid.
+  if (options.modifiers) return options.packing;
+  PackingRequest request = without_voids_that_cost(options.packing, options, monitor);
+  if (options.drainage) {
+    require_room_for_tubes(*options.drainage, request.limits());
+  } else {
+    warn_of_trapped_material(options.packing.process.process, monitor);
+  }
+  return request;
+}
+
+// The tolerance at which the voids take no more triangles than are allowed, and no more memory than there is.
+double tolerance_within(const Packing& packing, std::size_t outer_triangles, const HollowOptions& options,
+                        Monitor& monitor) {
+  const double tolerance = tolerance_for(packing, options.tolerance, outer_triangles, options.max_triangles);
+  notice_if_loosened(tolerance, options.tolerance, options.max_triangles, monitor);
+  require_memory_for_voids(packing, tolerance, outer_triangles);
+  return tolerance;
+}
+
+Solid carve_sealed(const PreparedModel& model, const Packing& packing, double tolerance, Monitor& monitor) {
+  const CarveOptions options{.tolerance = tolerance};
+  if (model.level_set) return model.level_set->subtract(packing, options, monitor);
+  return carve_keeping_surface(model.mesh, packing, options, monitor);
+}
+
+void warn_of_many_triangles(const CarvedModel& carved, std::size_t outer_triangles, Monitor& monitor) {
+  constexpr std::size_t kMany = 1000000;
+  const std::size_t count = carved.solid.mesh.triangles.size();
+  if (count <= kMany || count <= 2 * outer_triangles) return;
+  monitor.notice(fmt::format(
+      "the result has {} triangles, the model {}: slicers may be slow with it; --max-triangles or a larger "
+      "--tolerance gives fewer",
+      count, outer_triangles));
+}
+
+// `outer` has the holes of voids that drain.
+CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                  const std::optional<DrainedVoids>& drained, OuterWithHoles outer,
+                  const HollowOptions& options, Monitor& monitor) {
+  const double tolerance = tolerance_within(packing, model.mesh.triangles.size(), options, monitor);
+  monitor.stage("carve");
+  CarvedModel carved = drained ? carve_within(model, surface, packing, drained->plan, std::move(outer),
+                                              tolerance, options.max_triangles, monitor)
+                               : CarvedModel{carve_sealed(model, packing, tolerance, monitor), tolerance};
+  warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
+  monitor.check_interrupted();
+  return carved;
+}
+
+HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
+  PackingRequest request = request_of(options, monitor);
+  PreparedModel model = prepare_model(options, monitor);
+  request = sized_for(model, std::move(request), monitor);
+  auto [packing, surface] = pack_model(model, request, monitor);
+  if (options.cells) {
+    packing.limits = request.limits();
+    auto [cells, drainage, carved] = carve_as_cells(model, surface, packing, options, monitor);
+    warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
+    return {std::move(request), std::move(model),    std::move(surface), std::move(packing),
+            std::move(cells),   std::move(drainage), std::move(carved)};
+  }
+  auto [made, drainage, outer] = drain(model, surface, std::move(packing), request.process, options, monitor);
+  CarvedModel carved = carve(model, surface, made, drainage, std::move(outer), options, monitor);
+  return {std::move(request), std::move(model),    std::move(surface), std::move(made),
+          std::nullopt,       std::move(drainage), std::move(carved)};
+}
+
+}  // namespace
+
+// Voxels that were not asked for become finer until they hold the voids.
+HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
+  constexpr int kMostTries = 4;
+  HollowOptions tried = options;
+  for (int tries = 1;; ++tries) {
+    try {
+      return carve_once(tried, monitor);
+    } catch (const VoxelsTooCoarse& error) {
+      if (options.voxel_size || tries == kMostTries) throw;
+      tried.voxel_size = error.fine_enough();
+      monitor.notice(fmt::format("{}; voxels of {:g} mm are taken", error.what(), *tried.voxel_size));
+    }
+  }
+}
+
+}  // namespace aerate

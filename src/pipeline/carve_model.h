@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include "core/cells.h"
+#include "core/monitor.h"
+#include "core/packing.h"
+#include "core/surface_index.h"
+#include "pipeline/drain.h"
+#include "pipeline/options.h"
+#include "pipeline/prepare.h"
+
+namespace aerate {
+
+// A model with its voids, ready to be written in one form or several.
+struct HollowedModel {
+  PackingRequest request;  // what was packed: without voids that would cost more than they save
+  PreparedModel model;
+  SurfaceIndex surface;                  // of the model
+  Packing packing;                       // the voids that are made, or the spheres whose cells they are
+  std::optional<CellVoids> cells;        // what is made of them; absent: voids are the packing's own shapes
+  std::optional<DrainedVoids> drainage;  // absent: each is sealed
+  CarvedModel carved;
+};
+
+// Loads, inspects, mends, packs, verifies, drains and carves; writes nothing. Throws what `hollow` throws.
+HollowedModel carve_model(const HollowOptions& options, Monitor& monitor);
+
+}  // namespace aerate

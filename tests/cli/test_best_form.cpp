@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/cli/job.h"
+
+// What voids are where the command line does not say.
+namespace aerate::test {
+namespace {
+
+using Json = nlohmann::json;
+
+Json report_of(std::vector<std::string> command) {
+  command.insert(command.end(), {"--json", "-"});
+  const ProcessResult result = run(command);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return result.exit_code == 0 ? Json::parse(result.out) : Json();
+}
+
+Json without_time(Json report) {
+  for (const char* key : {"stages", "notices", "seconds", "peak_memory_bytes", "input", "output"})
+    report.erase(key);
+  return report;
+}
+
+double filament_of(const Json& report) {
+  return report.at("print").at("filament_after_mm3").get<double>();
+}
+
+TEST(BestForm, OfAPrintThatIsDescribedTakesTheLeastFilament) {
+  const Job job;
+  const std::string block = job.input("block.stl", make_box({0, 0, 0}, {40, 40, 40}));
+  const auto job_with = [&](std::vector<std::string> options) {
+    options.insert(options.end(), {"--infill", "100"});
+    return report_of(job.hollow(block, options));
+  };
+  const Json unasked = job_with({});
+  const double spheres = filament_of(job_with({"--shape", "spheres"}));
+  const double cells = filament_of(job_with({"--shape", "cells"}));
+  EXPECT_NE(spheres, cells);
+  EXPECT_EQ(filament_of(unasked), std::min(spheres, cells));
+  ASSERT_EQ(unasked["notices"].size(), 1U);
+  EXPECT_NE(unasked["notices"][0].get<std::string>().find("voids are cells"), std::string::npos);
+}
+
+TEST(BestForm, IsTheOtherWhereThePreferredCannotBeMade) {
+  const Job job;
+  // Spheres below roofs find no place for holes of 5 mm here.
+  const std::string bar = job.input("bar.stl", make_box({0, 0, 0}, {10, 10, 60}));
+  EXPECT_EQ(run(job.hollow(bar, {"--process", "metal", "--shape", "spheres"})).exit_code, 5);
+  const Json unasked = report_of(job.hollow(bar, {"--process", "metal"}));
+  EXPECT_EQ(unasked["voids"]["shape"], "cells");
+  const std::string why = unasked["notices"].back().get<std::string>();
+  EXPECT_NE(why.find("voids are cells, since of spheres no place was found"), std::string::npos) << why;
+  const Json asked = report_of(job.hollow(bar, {"--process", "metal", "--shape", "cells"}));
+  EXPECT_EQ(without_time(unasked), without_time(asked));
+}
+
+TEST(BestForm, IsThePreferredWhereThatLeavesLittleOut) {
+  const Job job;
+  const std::string block = job.input("block.stl", make_box({0, 0, 0}, {40, 40, 40}));
+  const Json unasked = report_of(job.hollow(block, {"--process", "sla"}));
+  EXPECT_EQ(unasked["voids"]["shape"], "cells");
+  EXPECT_TRUE(unasked["notices"].empty());
+}
+
+TEST(BestForm, IsNotLookedForWhereTheShapeIsAskedFor) {
+  const Job job;
+  const std::string bar = job.input("bar.stl", make_box({0, 0, 0}, {10, 10, 60}));
+  const ProcessResult refused = run(job.hollow(bar, {"--process", "metal", "--shape", "spheres"}));
+  EXPECT_NE(refused.err.find("escape holes"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(job.output()));
+}
+
+// The reason of the form that was preferred, where none can be made.
+TEST(BestForm, RefusesForThePreferred) {
+  const Job job;
+  const std::string thin = job.input("thin.stl", make_box({0, 0, 0}, {40, 40, 2}));
+  for (const char* process : {"sla", "metal"}) {
+    const ProcessResult refused = run(job.hollow(thin, {"--process", process}));
+    EXPECT_EQ(refused.exit_code, 5);
+    EXPECT_NE(refused.err.find("thinner than twice the wall"), std::string::npos) << refused.err;
+  }
+}
+
+}  // namespace
+}  // namespace aerate::test
