@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "kernels/roof.h"
@@ -11,6 +12,19 @@
 
 namespace aerate {
 
+// On which sides of a model escape holes may come out, unless their places are given.
+struct HoleSides {
+  std::vector<Vec3d> on;      // directions (unit) that the surface faces there; none: all
+  std::vector<Vec3d> not_on;  // directions that it does not face
+  double not_above = std::numeric_limits<double>::infinity();  // heights along `up` as printed
+  double not_below = -std::numeric_limits<double>::infinity();
+  std::vector<Box3d> not_within;
+
+  bool is_anywhere() const {
+    return on.empty() && not_on.empty() && not_within.empty() && not_above > 1e300 && not_below < -1e300;
+  }
+};
+
 // What is asked of a drainage.
 struct DrainageRequest {
   double channel_radius = 0;  // of the channels between voids
@@ -19,6 +33,8 @@ struct DrainageRequest {
   double narrow_hole_radius = 0;
   // Where escape holes are to open, near the surface. Fewer than two are supplemented.
   std::vector<Vec3d> escape_holes;
+  HoleSides sides = {};       // of those that supplement them
+  bool avoids_plate = false;  // none of these opens onto the build plate
 };
 
 // A straight round tube about the axis from `start` to `end`.

@@ -57,7 +57,7 @@ DrainageTask::DrainageTask(const DrainableModel& model, const Packing& packing, 
       clearance(model.surface, packing, std::max(longest_channel, longest_hole(request, limits)),
                 std::max(request.channel_radius, request.hole_radius)),
       ways(voids, limits.roof, request.channel_radius, longest_channel, clearance, monitor),
-      places(model.outward, voids, limits, request, clearance) {
+      places(model, voids, limits, request, clearance) {
   for (const VoidShape& shape : voids)
     volume += shape.takes_tube(request.channel_radius) ? shape.volume() : 0;
 }

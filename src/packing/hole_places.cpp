@@ -27,10 +27,15 @@ constexpr double kRoomyShare = 0.6;
 
 }  // namespace
 
-HolePlaces::HolePlaces(const kernels::WindingView& outward, std::span<const VoidShape> voids,
+HolePlaces::HolePlaces(const DrainableModel& model, std::span<const VoidShape> voids,
                        const PackingLimits& limits, const DrainageRequest& request,
                        const TubeClearance& clearance)
-    : voids_(voids), limits_(limits), request_(request), clearance_(clearance), outward_(outward) {}
+    : voids_(voids),
+      limits_(limits),
+      request_(request),
+      clearance_(clearance),
+      outward_(model.outward),
+      showing_(clearance, limits.roof.up, model.plate, request) {}
 
 // Ends the tube where its axis meets the surface.
 bool HolePlaces::reach_surface(EscapeHole& hole) const {
@@ -187,9 +192,9 @@ void HolePlaces::look_at(Place& place, Vec3d down) const {
   if (place.is_looked_at) return;
   place.is_looked_at = true;
   const Tube& tube = place.hole.tube;
-  if (reach_surface(place.hole)) {
+  if (reach_surface(place.hole) && showing_.is_allowed(tube)) {
     place.sill = sill_of_hole(place.hole, voids_[place.hole.from], -down);
-    place.showing = showing(clearance_.normal_near(tube.end), limits_.roof.up);
+    place.showing = showing_.of(tube);
     place.length = length(tube.end - tube.start);
   } else {
     place.sill = kInfinity;

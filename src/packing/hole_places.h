@@ -15,6 +15,8 @@
 #include "core/packing.h"
 #include "kernels/winding.h"
 #include "packing/hole_rules.h"
+#include "packing/hole_showing.h"
+#include "packing/plan_drainage.h"
 #include "packing/tube_clearance.h"
 
 namespace aerate {
@@ -54,14 +56,12 @@ class HolePlaces {
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   };
 
-  // `outward`: see DrainableModel.
-  HolePlaces(const kernels::WindingView& outward, std::span<const VoidShape> voids,
-             const PackingLimits& limits, const DrainageRequest& request, const TubeClearance& clearance);
+  HolePlaces(const DrainableModel& model, std::span<const VoidShape> voids, const PackingLimits& limits,
+             const DrainageRequest& request, const TubeClearance& clearance);
 
   // Tubes that lead out of some of the voids. `down` is the way liquid runs: the direction of gravity as
   // printed for the low hole, the opposite for the high one. A place is the better, the lower it lies in that
-  // sense, the less it shows (facing down or backwards in print orientation; back is +y where up is +z), and
-  // the shorter the tube.
+  // sense, the less it shows (packing/hole_showing.h), and the shorter the tube.
   // Only voids in the lowest `share` of their height in that sense are looked at.
   Ranking ranked(std::span<const std::uint32_t> voids, Vec3d down, double share);
 
@@ -77,9 +77,9 @@ class HolePlaces {
   // Before it is looked at, `sill`, `showing` and `length` are what they are at least.
   struct Place {
     EscapeHole hole;
-    double sill;                     // that liquid has to reach; infinite if the surface is too far away
-    double showing = kLeastShowing;  // to 1
-    double length;                   // of the tube
+    double sill;         // that liquid has to reach; infinite if the surface is too far away
+    double showing = 0;  // to 1
+    double length;       // of the tube
     bool is_looked_at = false;
   };
   using PlacesByVoid = std::vector<std::optional<std::vector<Place>>>;
@@ -99,6 +99,7 @@ class HolePlaces {
   const DrainageRequest& request_;
   const TubeClearance& clearance_;
   kernels::WindingView outward_;
+  HoleShowing showing_;
   std::array<PlacesByVoid, 2> places_;  // for print orientation and upside down
   std::map<std::array<double, 7>, bool> sound_;
 };

@@ -35,12 +35,6 @@ bool leads_outside(const Tube& tube, double wall, const TubeClearance& clearance
   return true;
 }
 
-double showing(Vec3d normal, Vec3d up) {
-  const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  const Vec3d back = normalised(cross(up, side));
-  return 0.3 * (1 + dot(normal, up)) + 0.2 * (1 - dot(normal, back));
-}
-
 std::vector<Vec3d> directions_about(Vec3d axis) {
   const TubeFrame frame = frame_of({{0, 0, 0}, axis, 1}, {0, 0, 1});
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));

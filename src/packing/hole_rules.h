@@ -24,15 +24,10 @@ inline constexpr double kLeastSlope = 0.5;
 bool leads_outside(const Tube& tube, double wall, const TubeClearance& clearance,
                    const kernels::WindingView& outward);
 
-// Weights of what makes a place good, in heights of what is opened: a tenth of it is given for a place that
+// Weights of what makes a place good, in heights of what is opened: a quarter of it is given for a place that
 // does not show.
-inline constexpr double kShowingWeight = 0.1;
+inline constexpr double kShowingWeight = 0.25;
 inline constexpr double kLengthWeight = 0.2;  // a millimetre of tube for each millimetre of height
-
-// How much a surface shows that has this normal, to 1: least where it faces down and backwards as printed
-// (back is +y where up is +z).
-double showing(Vec3d normal, Vec3d up);
-inline constexpr double kLeastShowing = 0.139;
 
 // Directions in which holes are looked for: spread evenly over the half of the unit sphere about `axis`, which
 // is the first of them.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,7 @@ using CanOpen = std::function<bool(const EscapeHole& hole)>;
 struct DrainableModel {
   const SurfaceIndex& surface;
   const kernels::WindingView& outward;  // of those of its triangles that bound it outside; 0 outside of all
+  double plate = -std::numeric_limits<double>::infinity();  // height of its lowest point as printed, mm
 };
 
 // Joins voids by straight channels and opens them to the outside.

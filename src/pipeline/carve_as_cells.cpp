@@ -26,8 +26,7 @@ CarvedCells carve_at(const PreparedModel& model, const SurfaceIndex& surface, co
     Solid solid = carve_cells(model.mesh, cells);
     return {std::move(cells), std::nullopt, {std::move(solid), tolerance}};
   }
-  DrainedCells drained =
-      drain_cells(model, surface, std::move(cells), packing.limits, options, tolerance, monitor);
+  DrainedCells drained = drain_cells(model, surface, cells, packing.limits, options, tolerance, monitor);
   return {std::move(drained.cells), std::move(drained.voids), {std::move(drained.solid), tolerance}};
 }
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <tbb/parallel_for.h>
@@ -182,6 +184,34 @@ std::vector<Tube> tubes_at_wide_ceilings(const Solid& solid, const DrainagePlan&
   return found;
 }
 
+double lowest_along(const Mesh& mesh, Vec3d up) {
+  double lowest = kInfinity;
+  for (const Vec3f position : mesh.positions) lowest = std::min(lowest, dot(to_double(position), up));
+  return lowest;
+}
+
+// What is drained without a hole that the build plate closes, unless much more is with such holes. `voids_of` says how the
+// voids of a result drain.
+template <typename DrainedUnder, typename VoidsOf>
+auto rather_off_plate(DrainageRequest request, const DrainedUnder& drained_under, const VoidsOf& voids_of) {
+  constexpr double kMuchMore = 0.03;  // of all voids' volume
+  request.avoids_plate = true;
+  std::optional<decltype(drained_under(request))> off_plate;
+  try {
+    off_plate = drained_under(request);
+  } catch (const NothingToRemoveError&) {
+    // Perhaps there is a place on the plate.
+  }
+  const auto dropped = [&](const auto& drained) { return voids_of(drained).get().dropped.volume; };
+  const double all =
+      off_plate ? dropped(*off_plate) + voids_of(*off_plate).get().plan.pools.total : kInfinity;
+  if (off_plate && dropped(*off_plate) <= kMuchMore * all) return std::move(*off_plate);
+  request.avoids_plate = false;
+  auto anywhere = drained_under(request);
+  if (off_plate && dropped(*off_plate) <= dropped(anywhere) + kMuchMore * all) return std::move(*off_plate);
+  return anywhere;
+}
+
 }  // namespace
 
 std::size_t DrainedVoids::count_narrow_holes() const {
@@ -193,43 +223,47 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
                      const ProcessChoice& process, const HollowOptions& options, Monitor& monitor) {
   if (!options.drainage) return {std::move(packing), std::nullopt, {}};
   monitor.stage("drain");
-  const DrainageRequest& request = *options.drainage;
   const double tolerance = options.tolerance;
-  warn_of_wide_tubes(process, packing.limits.roof, request, monitor);
-  require_resolvable_tubes(model.mesh, request, tolerance);
+  const Roof& roof = packing.limits.roof;
+  warn_of_wide_tubes(process, roof, *options.drainage, monitor);
+  require_resolvable_tubes(model.mesh, *options.drainage, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
+  const DrainableModel drainable{surface, outward.winding(), lowest_along(model.mesh, roof.up)};
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
     const WayOut way{hole.tube, packing.spheres[hole.from]};
-    return !is_among(refused, hole.tube) &&
-           may_be_cut(model.mesh, surface, way, packing.limits.roof, tolerance) &&
+    return !is_among(refused, hole.tube) && may_be_cut(model.mesh, surface, way, roof, tolerance) &&
            !is_crossed_near(model.mesh, surface, hole.tube);
   };
   // Cutting takes longer than all the rest, so it is tried on a whole plan, and places where it fails, which
   // looked as if it would not, are avoided by the next.
-  while (true) {
-    PlannedDrainage planned =
-        plan_drainage({surface, outward.winding()}, packing, request, can_open, monitor);
-    Packing kept = with_only(packing, planned.kept);
-    auto cut = cut_holes(model.mesh, surface, kept, planned.plan, {.tolerance = tolerance}, monitor);
-    const std::vector<std::size_t> failed = failed_holes(cut, planned.plan);
-    if (failed.empty()) {
-      DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
-      tell_what_was_dropped(voids, packing.spheres.size(), monitor);
-      return {std::move(kept), std::move(voids), std::move(std::get<OuterWithHoles>(cut))};
+  const auto drained_under = [&](const DrainageRequest& request) -> DrainedPacking {
+    while (true) {
+      PlannedDrainage planned = plan_drainage(drainable, packing, request, can_open, monitor);
+      Packing kept = with_only(packing, planned.kept);
+      auto cut = cut_holes(model.mesh, surface, kept, planned.plan, {.tolerance = tolerance}, monitor);
+      const std::vector<std::size_t> failed = failed_holes(cut, planned.plan);
+      if (failed.empty()) {
+        DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
+        return {std::move(kept), std::move(voids), std::move(std::get<OuterWithHoles>(cut))};
+      }
+      if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[failed.front()]);
+      for (const std::size_t i : failed) refused.push_back(planned.plan.holes[i].tube);
     }
-    if (refused.size() >= kMostRefused) throw cannot_be_cut(planned.plan.holes[failed.front()]);
-    for (const std::size_t i : failed) refused.push_back(planned.plan.holes[i].tube);
-  }
+  };
+  DrainedPacking drained = rather_off_plate(
+      *options.drainage, drained_under, [](const DrainedPacking& made) { return std::cref(*made.voids); });
+  tell_what_was_dropped(*drained.voids, packing.spheres.size(), monitor);
+  return drained;
 }
 
-DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
+DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, const CellVoids& cells,
                          const PackingLimits& limits, const HollowOptions& options, double tolerance,
                          Monitor& monitor) {
   monitor.stage("drain");
-  const DrainageRequest& request = *options.drainage;
-  require_resolvable_tubes(model.mesh, request, tolerance);
+  require_resolvable_tubes(model.mesh, *options.drainage, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
+  const DrainableModel drainable{surface, outward.winding(), lowest_along(model.mesh, limits.roof.up)};
   std::vector<Tube> refused;
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
     return !is_among(refused, tube) &&
@@ -237,30 +271,35 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
            !is_crossed_near(model.mesh, surface, tube);
   };
   const auto can_open_wall = [&](const Tube& window) { return !is_among(refused, window); };
-  while (true) {
-    PlannedCellDrainage planned = plan_cell_drainage({surface, outward.winding()}, cells, limits, request,
-                                                     can_open, can_open_wall, monitor);
-    CellVoids kept{cells.planes, cells.lattice, cells.ball_radius, {}};
-    for (const std::uint32_t i : planned.kept) kept.voids.push_back(cells.voids[i]);
-    auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
-    auto* solid = std::get_if<Solid>(&carved);
-    const std::vector<Tube> unfit = solid != nullptr
-                                        ? tubes_at_wide_ceilings(*solid, planned.plan, limits.roof, tolerance)
-                                        : tubes_of(std::get<UncutTubes>(carved), planned.plan);
-    if (unfit.empty()) {
-      DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
-      tell_what_was_dropped(voids, cells.voids.size(), monitor);
-      return {std::move(kept), std::move(voids), std::move(*solid)};
+  const auto drained_under = [&](const DrainageRequest& request) -> DrainedCells {
+    while (true) {
+      PlannedCellDrainage planned =
+          plan_cell_drainage(drainable, cells, limits, request, can_open, can_open_wall, monitor);
+      CellVoids kept{cells.planes, cells.lattice, cells.ball_radius, {}};
+      for (const std::uint32_t i : planned.kept) kept.voids.push_back(cells.voids[i]);
+      auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
+      auto* solid = std::get_if<Solid>(&carved);
+      const std::vector<Tube> unfit =
+          solid != nullptr ? tubes_at_wide_ceilings(*solid, planned.plan, limits.roof, tolerance)
+                           : tubes_of(std::get<UncutTubes>(carved), planned.plan);
+      if (unfit.empty()) {
+        DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
+        return {std::move(kept), std::move(voids), std::move(*solid)};
+      }
+      for (const Tube& tube : unfit) {
+        if (refused.size() >= kMostRefused)
+          throw FailureError(
+              fmt::format("the surfaces at a tube near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut",
+                          tube.start.x, tube.start.y, tube.start.z),
+              "raise --tolerance, or give another --channel-diameter or --hole-diameter");
+        refused.push_back(tube);
+      }
     }
-    for (const Tube& tube : unfit) {
-      if (refused.size() >= kMostRefused)
-        throw FailureError(
-            fmt::format("the surfaces at a tube near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut", tube.start.x,
-                        tube.start.y, tube.start.z),
-            "raise --tolerance, or give another --channel-diameter or --hole-diameter");
-      refused.push_back(tube);
-    }
-  }
+  };
+  DrainedCells drained = rather_off_plate(*options.drainage, drained_under,
+                                          [](const DrainedCells& made) { return std::cref(made.voids); });
+  tell_what_was_dropped(drained.voids, cells.voids.size(), monitor);
+  return drained;
 }
 
 void require_resolvable_tubes(const Mesh& model, const DrainageRequest& request, double tolerance) {

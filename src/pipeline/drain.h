@@ -48,7 +48,7 @@ struct DrainedCells {
 
 // The same for cells, which are joined by windows in the walls between them; carved as well, since that tells
 // whether a tube can be cut. Throws what plan_cell_drainage throws.
-DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
+DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface, const CellVoids& cells,
                          const PackingLimits& limits, const HollowOptions& options, double tolerance,
                          Monitor& monitor);
 

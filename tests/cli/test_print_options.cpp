@@ -46,7 +46,7 @@ TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
   expect_refused(job, {"--infill", "15%", "--max-radius", "3.5"}, kNothing,
                  {"15 % infill", "above a radius of 18", "3.5 mm (--max-radius)",
                   "voids of 3.5 mm save above", "modifier", "--force"});
-  expect_refused(job, {"--infill", "20%"}, kNothing,
+  expect_refused(job, {"--infill", "20%", "--shape", "spheres"}, kNothing,
                  {"20 % infill", "radius 13.8 mm fits", "not with the roof that it needs",
                   "voids of 14 mm save above", "modifier", "--force"});
   expect_refused(job, {"--infill", "0%"}, kNothing,
@@ -86,7 +86,7 @@ TEST(PrintOptions, ModifiersThatMakeAPrintHeavierAreRefused) {
 // Closer to no change than the prediction is to the slicer.
 TEST(PrintOptions, APrintThatMayBecomeHeavierIsSaidSo) {
   const Job job;
-  const Json close = report_of(job, block(), {"--infill", "27"});
+  const Json close = report_of(job, block(), {"--infill", "27", "--shape", "spheres"});
   EXPECT_LT(close["print"]["filament_change_percent"].get<double>(), 0);
   EXPECT_GT(close["print"]["filament_change_percent"].get<double>(), -1.5);
   EXPECT_TRUE(contains(close["notices"].dump(), "may become heavier"));
@@ -96,7 +96,7 @@ TEST(PrintOptions, APrintThatMayBecomeHeavierIsSaidSo) {
 
 TEST(PrintOptions, VoidsThatCostMoreThanTheySaveAreNotMade) {
   const Job job;
-  const std::vector<std::string> limits{"--max-radius", "12"};
+  const std::vector<std::string> limits{"--max-radius", "12", "--shape", "spheres"};
   const Json report = report_of(job, block(), with(limits, {"--infill", "50"}));
   const double least = report["limits"]["min_radius_mm"].get<double>();
   EXPECT_NEAR(least, report["print"]["break_even_radius_mm"].get<double>(), 0.01);

@@ -62,7 +62,7 @@ CellDrainageTask::CellDrainageTask(const DrainableModel& model, const CellVoids&
       surfaces(model.surface, voids, kept, 2 * longest_hole(asked, kept)),
       windows(find_cell_windows(voids, hollows, kept, asked.channel_radius, surfaces, watched)) {
   for (const double radius : {asked.hole_radius, asked.narrow_hole_radius})
-    if (radius > 0) places.emplace_back(voids, hollows, kept, radius, surfaces, model.outward);
+    if (radius > 0) places.emplace_back(model, voids, hollows, kept, asked, radius, surfaces);
   for (const VoidHollows& one : hollows) volume += one.volume();
 }
 

@@ -34,15 +34,16 @@ std::vector<Vec3d> directions_and_level_ones(Vec3d axis) {
 
 }  // namespace
 
-CellHolePlaces::CellHolePlaces(const CellVoids& cells, const std::vector<VoidHollows>& hollows,
-                               const PackingLimits& limits, double radius, const CellSurfaces& surfaces,
-                               const kernels::WindingView& outward)
+CellHolePlaces::CellHolePlaces(const DrainableModel& model, const CellVoids& cells,
+                               const std::vector<VoidHollows>& hollows, const PackingLimits& limits,
+                               const DrainageRequest& request, double radius, const CellSurfaces& surfaces)
     : cells_(cells),
       hollows_(hollows),
       limits_(limits),
       surfaces_(surfaces),
-      outward_(outward),
-      ways_out_(hollows, limits, radius, surfaces, outward) {
+      outward_(model.outward),
+      ways_out_(hollows, limits, radius, surfaces, model.outward),
+      showing_(surfaces.model(), limits.roof.up, model.plate, request) {
   const Vec3d up = limits.roof.up;
   directions_ = {directions_and_level_ones(-up), directions_and_level_ones(up)};
   // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
@@ -64,7 +65,7 @@ CellHolePlaces::Ways CellHolePlaces::ways_from(std::uint32_t from, std::uint32_t
     const bool leads_down = dot(direction, up) < -0.5;
     for (const double above : {0.2 * ball + 0.1, std::max(ball, radius) + 0.1}) {
       const auto way = ways_out_.follow(from, at + up * (lowered + above), direction);
-      if (way) ways.push_back(*way);
+      if (way && showing_.is_allowed(way->hole.tube)) ways.push_back(*way);
       if (way || !leads_down) break;
     }
   }
@@ -85,19 +86,22 @@ class CellHolePlaces::Ranking {
     const Vec3d at = nodes.at(node);
     const double reach = 2 * places_.ways_out_.longest();
     if (places_.surfaces_.model().to_surface(at, reach) >= reach) return;
-    const double least = dot(at, up_) - nodes.lattice.spacing + kShowingWeight * height_ * kLeastShowing +
-                         kLengthWeight * places_.limits_.wall;
+    const double least = dot(at, up_) - nodes.lattice.spacing + kLengthWeight * places_.limits_.wall;
     queue_.push({least, sequence_++, from, node, nullptr});
   }
 
+  // How much a way shows is only looked at where it may be the best.
   const CellWayOut* next() {
     while (!queue_.empty()) {
-      if (queue_.top().way != nullptr) {
-        const CellWayOut* best = queue_.top().way;
-        queue_.pop();
-        return best;
+      const Entry best = queue_.top();
+      if (best.way == nullptr) {
+        look();
+        continue;
       }
-      look();
+      queue_.pop();
+      if (best.way->showing) return best.way;
+      best.way->showing = places_.showing_.of(best.way->hole.tube);
+      queue_.push({cost_of(*best.way), best.sequence, best.from, best.node, best.way});
     }
     return nullptr;
   }
@@ -107,7 +111,7 @@ class CellHolePlaces::Ranking {
     double cost;
     std::size_t sequence;
     std::uint32_t from, node;
-    const CellWayOut* way;  // null: all those from the node
+    CellWayOut* way;  // null: all those from the node
     friend bool operator<(const Entry& a, const Entry& b) {
       return std::tie(a.cost, a.sequence) > std::tie(b.cost, b.sequence);
     }
@@ -130,13 +134,13 @@ class CellHolePlaces::Ranking {
       *unknown[i].first = places_.ways_from(entry.from, entry.node, orientation_);
     });
     for (const Entry& entry : nodes) {
-      for (const CellWayOut& way : places_.known_[{orientation_, entry.from, entry.node}])
+      for (CellWayOut& way : places_.known_[{orientation_, entry.from, entry.node}])
         queue_.push({cost_of(way), sequence_++, entry.from, entry.node, &way});
     }
   }
 
   double cost_of(const CellWayOut& way) const {
-    return places_.ways_out_.sill_of(way, orientation_) + kShowingWeight * height_ * way.showing +
+    return places_.ways_out_.sill_of(way, orientation_) + kShowingWeight * height_ * way.showing.value_or(0) +
            kLengthWeight * way.length();
   }
 

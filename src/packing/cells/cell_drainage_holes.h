@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "packing/cells/cell_drainage_ways_out.h"
+#include "packing/hole_showing.h"
+#include "packing/plan_drainage.h"
 
 namespace aerate {
 
@@ -20,9 +22,10 @@ class CellHolePlaces {
  public:
   using Accept = std::function<bool(const CellHole& hole)>;
 
-  // `outward`: see DrainableModel. `hollows`: by void.
-  CellHolePlaces(const CellVoids& cells, const std::vector<VoidHollows>& hollows, const PackingLimits& limits,
-                 double radius, const CellSurfaces& surfaces, const kernels::WindingView& outward);
+  // `hollows`: by void.
+  CellHolePlaces(const DrainableModel& model, const CellVoids& cells, const std::vector<VoidHollows>& hollows,
+                 const PackingLimits& limits, const DrainageRequest& request, double radius,
+                 const CellSurfaces& surfaces);
 
   // A hole that drains one of some hollows in that orientation: the best that is sound and accepted. A place
   // is the better, the lower liquid gets there, the less it shows in print orientation, and the shorter the
@@ -46,6 +49,7 @@ class CellHolePlaces {
   const CellSurfaces& surfaces_;
   kernels::WindingView outward_;
   WaysOut ways_out_;
+  HoleShowing showing_;
   std::array<std::vector<Vec3d>, 2> directions_;                                 // by orientation
   std::map<std::tuple<std::size_t, std::uint32_t, std::uint32_t>, Ways> known_;  // orientation, void, node
 };

@@ -61,7 +61,6 @@ std::optional<CellWayOut> WaysOut::follow(std::uint32_t from, Vec3d inside, Vec3
   way.first -= skipped;
   way.last -= skipped;
   way.reached -= skipped;
-  way.showing = showing(surfaces_.model().normal_near(tube.end), limits_.roof.up);
   return way;
 }
 

@@ -1,0 +1,85 @@
+#include "packing/hole_showing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/facet_distance.h"
+#include "packing/hole_rules.h"
+
+namespace aerate {
+namespace {
+
+constexpr double kFromBelow = 1.0 / 3;
+constexpr double kFromBack = 0.9;
+
+// Rays begin so far above the surface, and what is farther off than so many diameters of the hole keeps nothing off: a hole
+// in a hollow of its own size is hidden, one that a far part of the model overhangs is not. Millimetres.
+constexpr double kAboveSurface = 0.01;
+constexpr double kFarOff = 20;
+
+// A rim that comes nearer to the plate than this is closed by it, mm.
+constexpr double kLeastAbovePlate = 0.3;
+
+// A side of the model is where its normal is within 45 degrees of a direction.
+constexpr double kSide = 0.70710678;
+
+Vec3d back_of(Vec3d up) {
+  const Vec3d side = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  return normalised(cross(up, side));
+}
+
+std::vector<Vec3d> all_round(Vec3d axis) {
+  std::vector<Vec3d> views = directions_about(axis);
+  const std::vector<Vec3d> other = directions_about(-axis);
+  views.insert(views.end(), other.begin(), other.end());
+  return views;
+}
+
+}  // namespace
+
+HoleShowing::HoleShowing(const TubeClearance& clearance, Vec3d up, double plate,
+                         const DrainageRequest& request)
+    : clearance_(clearance),
+      up_(up),
+      back_(back_of(up)),
+      plate_(plate),
+      request_(request),
+      views_(all_round(up)) {}
+
+bool HoleShowing::is_on_plate(const Tube& hole) const {
+  const double rise = dot(direction_of(hole), up_);
+  const double reach = hole.radius * std::sqrt(std::max(0.0, 1 - rise * rise));
+  return dot(hole.end, up_) - reach < plate_ + kLeastAbovePlate;
+}
+
+bool HoleShowing::is_allowed(const Tube& hole) const {
+  if (request_.avoids_plate && is_on_plate(hole)) return false;
+  const HoleSides& sides = request_.sides;
+  if (sides.is_anywhere()) return true;
+  const Vec3d normal = clearance_.normal_near(hole.end);
+  const auto faces = [&](Vec3d direction) { return dot(normal, direction) >= kSide; };
+  if (!sides.on.empty() && std::ranges::none_of(sides.on, faces)) return false;
+  if (std::ranges::any_of(sides.not_on, faces)) return false;
+  const double height = dot(hole.end, up_);
+  if (height > sides.not_above || height < sides.not_below) return false;
+  return std::ranges::none_of(sides.not_within, [&](const Box3d& box) {
+    return distance_squared(box, {hole.end, hole.end}) <= hole.radius * hole.radius;
+  });
+}
+
+double HoleShowing::of(const Tube& hole) const {
+  const Vec3d normal = clearance_.normal_near(hole.end);
+  const Vec3d start = hole.end + normal * kAboveSurface;
+  const double far_off = kFarOff * hole.radius;
+  double seen = 0, all = 0;
+  for (const Vec3d view : views_) {
+    const double along = dot(view, normal);
+    if (along <= 0) continue;
+    const double weight = (dot(view, up_) < 0 ? kFromBelow : 1) * (dot(view, back_) > 0.5 ? kFromBack : 1);
+    all += along;
+    if (!clearance_.first_hit(start, view, far_off)) seen += weight * along;
+  }
+  return all > 0 ? seen / all : 1;
+}
+
+}  // namespace aerate

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/drainage.h"
+#include "kernels/vec.h"
+#include "packing/tube_clearance.h"
+
+namespace aerate {
+
+// Where on the outside of a model an escape hole may come out, and how much it would be seen there.
+class HoleShowing {
+ public:
+  // `up`: against gravity as printed; `plate`: the height along it of the model's lowest point, -infinity if there is no
+  // build plate. The clearance must outlive this.
+  HoleShowing(const TubeClearance& clearance, Vec3d up, double plate, const DrainageRequest& request);
+
+  // Does the request allow a hole where this one meets the surface?
+  bool is_allowed(const Tube& hole) const;
+
+  // How much the place shows, 0 to 1: the share of what a lamp at each direction of view would give it that the model does not
+  // keep off (ambient exposure, by rays). Views from below count a third, and all of them a little less from the back
+  // (+y where up is +z), so that of two like places the one at the back is taken.
+  double of(const Tube& hole) const;
+
+  // Does the hole open onto the build plate?
+  bool is_on_plate(const Tube& hole) const;
+
+ private:
+  const TubeClearance& clearance_;
+  Vec3d up_, back_;
+  double plate_;
+  const DrainageRequest& request_;
+  std::vector<Vec3d> views_;  // evenly over the unit sphere
+};
+
+}  // namespace aerate
