@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "kernels/roof_distance.h"
 #include "printing/level_set.h"
 #include "printing/shells.h"
@@ -131,9 +132,8 @@ VoxelsTooCoarse too_small_for_voxels(const Packing& packing, double voxel_size) 
   }
   const double fine_enough = rounded_down(smallest / kSmallestVoidRadiusVoxels);
   return VoxelsTooCoarse(
-      fmt::format(
-          "{} of {} voids are too small for a voxel size of {:g} mm: the smallest has a radius of {:g} mm",
-          count, packing.spheres.size(), voxel_size, smallest),
+      fmt::format("{} of {} too small for a voxel size of {:g} mm: the smallest has a radius of {:g} mm",
+                  count, counted(packing.spheres.size(), "void is", "voids are"), voxel_size, smallest),
       fmt::format("use --voxel {:g} or less, or raise --min-radius", fine_enough), fine_enough);
 }
 

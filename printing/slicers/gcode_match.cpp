@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/listed.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
@@ -299,7 +300,7 @@ std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
     return fmt::format("its lines are longer than {:g} mm, more than can be compared", kLongestPrint);
   const PrintDifference difference = compare_prints(a, b);
   if (difference.layers_in_one > 0)
-    return fmt::format("{} layers are at other heights", difference.layers_in_one);
+    return counted(difference.layers_in_one, "layer is at another height", "layers are at other heights");
   if (difference.worst_layer > kInOneLayer)
     return fmt::format("{:.1f} % of the filament is elsewhere at z = {:.2f} mm", 100 * difference.worst_layer,
                        difference.worst_z);

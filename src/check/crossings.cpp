@@ -8,6 +8,7 @@
 
 #include "check/check_failure.h"
 #include "check/tube_cut.h"
+#include "core/listed.h"
 #include "mesh/inspect.h"
 
 namespace aerate {
@@ -61,8 +62,9 @@ void require_no_crossings(const Mesh& read_back, const DrainagePlan& plan) {
     if (crossings[i].pair_count == 0) continue;
     const Vec3d place = crossings[i].places.front();
     fail_check(
-        "{} pairs of triangles intersect at escape hole {}, the first near ({:.3f}, {:.3f}, {:.3f}) mm",
-        crossings[i].pair_count, i, place.x, place.y, place.z);
+        "{} at escape hole {}, the first near ({:.3f}, {:.3f}, {:.3f}) mm",
+        counted(crossings[i].pair_count, "pair of triangles intersects", "pairs of triangles intersect"), i,
+        place.x, place.y, place.z);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/listed.h"
 #include "files/assimp_import.h"
 #include "files/formats.h"
 #include "files/input_file.h"
@@ -62,8 +63,9 @@ std::size_t check_binary(const InputFile& file, std::vector<std::string>& notice
   const std::size_t needed = kPreambleBytes + promised * kFacetBytes;
   const bool is_whole = file.size == kPreambleBytes + held * kFacetBytes;
   if (!is_whole && promised > 0 && held == promised) {
-    notices.push_back(fmt::format("{} bytes follow after the {} triangles that the STL header promises",
-                                  file.size - needed, promised));
+    notices.push_back(fmt::format("{} after the {} that the STL header promises",
+                                  counted(file.size - needed, "byte follows", "bytes follow"),
+                                  counted(promised, "triangle", "triangles")));
     return promised;
   }
   if (!is_whole || (held == 0 && promised != 0)) {

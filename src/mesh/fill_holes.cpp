@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
 
@@ -86,11 +87,11 @@ Repaired fill_holes(Mesh mesh, double max_diameter) {
     }
     mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
   }
-  const std::size_t added = mesh.triangles.size() - before;
+  const std::string triangle_count = counted(mesh.triangles.size() - before, "triangle", "triangles");
   std::string notice = chains.size() == 1
-                           ? fmt::format("a hole was closed with {} triangles: {}", added, place(largest))
-                           : fmt::format("{} holes were closed with {} triangles, the largest {}",
-                                         chains.size(), added, place(largest));
+                           ? fmt::format("a hole was closed with {}: {}", triangle_count, place(largest))
+                           : fmt::format("{} holes were closed with {}, the largest {}", chains.size(),
+                                         triangle_count, place(largest));
   return {std::move(mesh), {std::move(notice)}};
 }
 

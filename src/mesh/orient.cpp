@@ -172,8 +172,9 @@ Repaired orient_consistently(Mesh mesh) {
                                            turned_count == 1 ? "its neighbours" : "their neighbours"));
   }
   if (left > 0) {
-    repaired.notices.push_back(fmt::format(
-        "triangles disagree about inside and outside at {} edges, and cannot be made to agree", left));
+    repaired.notices.push_back(
+        fmt::format("triangles disagree about inside and outside at {}, and cannot be made to agree",
+                    counted(left, "edge", "edges")));
   }
   return repaired;
 }
@@ -200,10 +201,10 @@ Repaired orient_outward(Mesh mesh) {
     const std::uint32_t label = labels.of_triangle[t];
     if (label != kNone && inside_out[label]) turn(mesh.triangles[t]);
   }
-  std::string notice =
-      turned == shells.size()
-          ? std::string("the model was inside out and has been turned")
-          : fmt::format("{} of {} shells were inside out and have been turned", turned, shells.size());
+  std::string notice = turned == shells.size()
+                           ? std::string("the model was inside out and has been turned")
+                           : fmt::format("{} of {} shells {} been turned", turned, shells.size(),
+                                         turned == 1 ? "was inside out and has" : "were inside out and have");
   return {std::move(mesh), {std::move(notice)}};
 }
 

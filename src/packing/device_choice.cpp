@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
+#include "core/listed.h"
 #include "packing/run_on_device.h"
 
 namespace aerate {
@@ -59,7 +60,9 @@ std::optional<DeviceRequest> parse_device(std::string_view text) {
 }
 
 std::vector<std::string> describe_devices() {
-  std::vector<std::string> lines{fmt::format("cpu: {} threads", tbb::this_task_arena::max_concurrency())};
+  std::vector<std::string> lines{
+      "cpu: " +
+      counted(static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()), "thread", "threads")};
   const std::string build = kernels::cuda_build();
   if (build.empty()) {
     lines.emplace_back("cuda: not built in");

@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "pipeline/memory.h"
 #include "printing/carve.h"
 
@@ -48,10 +49,10 @@ void require_memory_for_voids(const Packing& packing, double tolerance, std::siz
   if (bytes_of_result(most_void_triangles(packing, options), outer_triangles) <= available_memory_bytes())
     return;
   const std::size_t in_voids = estimate_void_triangles(packing, options);
-  require(
-      bytes_of_result(static_cast<double>(in_voids), outer_triangles),
-      fmt::format("a result of {} triangles ({} voids)", outer_triangles + in_voids, packing.spheres.size()),
-      "give a larger --tolerance or --min-radius, or limit it with --max-triangles");
+  require(bytes_of_result(static_cast<double>(in_voids), outer_triangles),
+          fmt::format("a result of {} triangles ({})", outer_triangles + in_voids,
+                      counted(packing.spheres.size(), "void", "voids")),
+          "give a larger --tolerance or --min-radius, or limit it with --max-triangles");
 }
 
 void require_memory_for_cells(const Mesh& mesh, const Packing& packing, const CellShape& shape) {
@@ -82,9 +83,10 @@ double tolerance_for(const Packing& packing, double asked, std::size_t outer_tri
   const auto loosened = loosen_tolerance(packing, CarveOptions{.tolerance = asked}, for_voids);
   if (!loosened) {
     throw UsageError(
-        fmt::format("--max-triangles {}: the model has {} triangles of its own, and {} voids take "
-                    "more than the {} that are left, however coarse they are",
-                    *max_triangles, outer_triangles, packing.spheres.size(), for_voids),
+        fmt::format("--max-triangles {}: the model has {} triangles of its own, and {} more than the {} "
+                    "that are left, however coarse",
+                    *max_triangles, outer_triangles,
+                    counted(packing.spheres.size(), "void takes", "voids take"), for_voids),
         "allow more triangles, or give a larger --min-radius for fewer voids");
   }
   return *loosened;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/listed.h"
 #include "mesh/inspect.h"
 #include "packing/packing_cells.h"
 #include "pipeline/budget.h"
@@ -49,8 +50,8 @@ CellVoids shape_soundly(const SurfaceIndex& surface, const Packing& packing, con
   };
   const std::size_t dropped = std::erase_if(cells.voids, is_crossed);
   if (dropped > 0)
-    monitor.notice(
-        fmt::format("{} voids are not made: their surfaces would run through themselves", dropped));
+    monitor.notice(fmt::format("{} not made: surfaces would run through themselves",
+                               counted(dropped, "void is", "voids are")));
   return cells;
 }
 
@@ -60,10 +61,10 @@ void tell_of_solid_cells(const CellVoids& cells, const Packing& packing, const C
   for (const CellVoid& piece : cells.voids) made.insert(piece.cell);
   const std::size_t solid = packing.spheres.size() - made.size();
   if (solid == 0) return;
-  monitor.notice(
-      fmt::format("{} of {} cells stay solid: no part of them takes a ball of --fillet {:g} mm{}", solid,
-                  packing.spheres.size(), shape.fillet,
-                  packing.limits.roof.limits_ceilings() ? " below a ceiling that can be bridged" : ""));
+  monitor.notice(fmt::format(
+      "{} of {} cells {}: no part of {} takes a ball of --fillet {:g} mm{}", solid, packing.spheres.size(),
+      solid == 1 ? "stays solid" : "stay solid", solid == 1 ? "it" : "them", shape.fillet,
+      packing.limits.roof.limits_ceilings() ? " below a ceiling that can be bridged" : ""));
 }
 
 }  // namespace

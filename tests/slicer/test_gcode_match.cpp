@@ -76,7 +76,7 @@ TEST(GcodeMatch, AnotherPlaceSizeOrHeightIsADifference) {
   EXPECT_EQ(difference_of(a, moved(a, 2.5)).value(), "its outline is 2.50 mm off");
   EXPECT_TRUE(difference_of(a, moved(a, 0.03)).has_value());
   EXPECT_TRUE(difference_of(a, tower(10, 0, 12.05)).has_value());
-  EXPECT_EQ(difference_of(a, tower(11, 0)).value(), "1 layers are at other heights");
+  EXPECT_EQ(difference_of(a, tower(11, 0)).value(), "1 layer is at another height");
   EXPECT_TRUE(difference_of(a, {}).has_value());
 }
 
