@@ -6,6 +6,7 @@
 
 #include "cli/numbers.h"
 #include "core/error.h"
+#include "core/listed.h"
 
 namespace aerate::cli {
 namespace {
@@ -28,7 +29,6 @@ DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
       .add_option("--escape-hole", places_,
                   "A point of the surface where an escape hole is to open, x,y,z in mm; may be repeated "
                   "(default where it shows least, low and high)")
-      ->check(parsed_by(parse_point, "is no place: give three numbers x,y,z"))
       ->type_name("X,Y,Z")
       ->allow_extra_args(false)  // or it would take the model
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -42,6 +42,22 @@ void DrainageOptions::require_no_tubes() const {
   if (!places_.empty()) refuse("--escape-hole");
 }
 
+std::vector<Vec3d> DrainageOptions::escape_holes() const {
+  std::vector<Vec3d> points;
+  std::vector<std::string> others;
+  for (const std::string& place : places_) {
+    if (const auto point = parse_point(place))
+      points.push_back(*point);
+    else
+      others.push_back(fmt::format("'{}'", place));
+  }
+  if (!others.empty())
+    throw UsageError(fmt::format("--escape-hole: {} {}", listed(others, "and"),
+                                 others.size() == 1 ? "is no place" : "are no places"),
+                     "give three numbers x,y,z");
+  return points;
+}
+
 HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
   const ProcessChoice& choice = options.packing.process;
   const bool drains = drain_option_->count() > 0 ? drain_ : choice.process.drainage == Drainage::needed;
@@ -49,10 +65,8 @@ HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
     require_no_tubes();
     return options;
   }
-  std::vector<Vec3d> escape_holes;
-  for (const std::string& place : places_) escape_holes.push_back(parse_point(place).value());
   options.packing.process = with_tubes(choice, limits_.given());
-  options.drainage = drainage_request(options.packing.process, std::move(escape_holes));
+  options.drainage = drainage_request(options.packing.process, escape_holes());
   return options;
 }
 

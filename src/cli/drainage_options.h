@@ -23,6 +23,8 @@ class DrainageOptions {
 
  private:
   void require_no_tubes() const;
+  // Throws UsageError for what is no point, all of it in one message.
+  std::vector<Vec3d> escape_holes() const;
 
   bool drain_ = false;
   const CLI::Option* drain_option_;

@@ -1,6 +1,7 @@
 #include "packing/drainage_refusals.h"
 
 #include <fmt/format.h>
+#include <vector>
 
 namespace aerate {
 
@@ -26,6 +27,23 @@ UsageError no_hole_leads_from(Vec3d place, const std::optional<Vec3d>& usable,
                                   usable->x, usable->y, usable->z));
   return UsageError(what, "ask for a place nearer to a large void, give " + narrower_holes(request) +
                               ", or leave --escape-hole out");
+}
+
+void open_at_each(std::span<const Vec3d> places, const std::function<void(Vec3d place)>& open) {
+  std::vector<UsageError> refusals;
+  for (const Vec3d place : places) {
+    try {
+      open(place);
+    } catch (const UsageError& refusal) {
+      refusals.push_back(refusal);
+    }
+  }
+  if (refusals.empty()) return;
+  if (refusals.size() == 1) throw refusals.front();
+  std::string what = fmt::format("{} of {} escape holes cannot be made where they are asked for",
+                                 refusals.size(), places.size());
+  for (const UsageError& refusal : refusals) what += fmt::format("\n{}: {}", refusal.what(), refusal.hint());
+  throw UsageError(what, "give other places with --escape-hole");
 }
 
 NothingToRemoveError nothing_is_opened(const DrainageRequest& request, const std::string& other_way) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/drainage.h"
@@ -20,6 +22,9 @@ NothingToRemoveError nothing_is_opened(const DrainageRequest& request, const std
 // A hole that is asked for at a place cannot be made there. `usable`: the nearest place at which one can.
 UsageError no_hole_leads_from(Vec3d place, const std::optional<Vec3d>& usable,
                               const DrainageRequest& request);
+
+// Opens a hole at each place that is asked for. Throws the UsageErrors of `open` together, once all were tried.
+void open_at_each(std::span<const Vec3d> places, const std::function<void(Vec3d place)>& open);
 
 // All that was opened was left out again.
 NothingToRemoveError all_stays_full(const DrainageRequest& request, const std::string& other_way = {});

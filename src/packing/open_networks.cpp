@@ -127,7 +127,7 @@ Draft open_where_asked(DrainageTask& task, Draft draft) {
     const auto hole = first_that_opens(task, draft.tubes, roomy);
     return hole ? hole : first_that_opens(task, draft.tubes, found);
   };
-  for (const Vec3d place : task.request.escape_holes) {
+  open_at_each(task.request.escape_holes, [&](Vec3d place) {
     const auto hole = hole_at(place);
     if (!hole)
       throw no_hole_leads_from(place,
@@ -136,7 +136,7 @@ Draft open_where_asked(DrainageTask& task, Draft draft) {
                                task.request);
     draft.tubes.place(*hole);
     draft.asked_for.push_back(hole->from);
-  }
+  });
   return draft;
 }
 

@@ -237,6 +237,21 @@ TEST(DrainageOptions, WrongInput) {
   refused({"--shape", "spheres", "--hole-diameter", "18"}, kNothingToRemove, {"18 mm", "--hole-diameter"});
 }
 
+TEST(DrainageOptions, AllBadPlacesAreTold) {
+  const std::vector<std::string> places{"--escape-hole", "12,20,-30",     "--escape-hole",
+                                        "12,20,0",       "--escape-hole", "25,20,20"};
+  for (const char* shape : {"spheres", "cells"}) {
+    std::vector<std::string> arguments{"--process", "sla", "--shape", shape};
+    arguments.insert(arguments.end(), places.begin(), places.end());
+    expect_refused(Job(), arguments, kUsage,
+                   {"2 of 3 escape holes cannot be made", "outside the model", "(12.00, 20.00, 0.00) mm",
+                    "(25.00, 20.00, 20.00) mm", "inside the model, away from its surface", "--escape-hole"});
+  }
+  expect_refused(
+      Job(), {"--process", "sla", "--escape-hole", "12,20", "--escape-hole", "1,2,3", "--escape-hole", "x"},
+      kUsage, {"--escape-hole: '12,20' and 'x' are no places", "x,y,z"});
+}
+
 // A place on the surface from which no tube reaches a void; and one across an edge, which is cut like any
 // other.
 TEST(DrainageOptions, AnEscapeHoleIntoNothing) {

@@ -181,7 +181,7 @@ CellDraft open_where_asked(CellDrainageTask& task, CellDraft draft) {
     }
     return hole;
   };
-  for (const Vec3d place : task.request.escape_holes) {
+  open_at_each(task.request.escape_holes, [&](Vec3d place) {
     auto hole = hole_at(place);
     if (!hole)
       throw no_hole_leads_from(
@@ -191,7 +191,7 @@ CellDraft open_where_asked(CellDrainageTask& task, CellDraft draft) {
           task.request);
     draft.asked_for.push_back(hole->hole.from);
     draft.holes.push_back(std::make_shared<const CellHole>(std::move(*hole)));
-  }
+  });
   return draft;
 }
 
