@@ -17,6 +17,7 @@
 #include "check/crossings.h"
 #include "core/ceiling.h"
 #include "core/error.h"
+#include "core/listed.h"
 #include "core/upright.h"
 #include "kernels/constants.h"
 #include "mesh/outward_shells.h"
@@ -64,15 +65,17 @@ std::string what_would_reach_them(const UndrainedVoids& dropped, const DrainageR
 void tell_what_was_dropped(const DrainedVoids& drainage, std::size_t packed, Monitor& monitor) {
   const UndrainedVoids& dropped = drainage.dropped;
   if (dropped.count() > 0)
-    monitor.notice(fmt::format("{} of {} voids ({:.1f} mm3) cannot be drained and are not made: {}{}",
-                               dropped.count(), packed, dropped.volume, reasons(dropped, drainage.request),
+    monitor.notice(fmt::format("{} of {} ({:.1f} mm3) cannot be drained and {} not made: {}{}",
+                               dropped.count(), counted(packed, "void", "voids"), dropped.volume,
+                               dropped.count() == 1 ? "is" : "are", reasons(dropped, drainage.request),
                                what_would_reach_them(dropped, drainage.request)));
   if (const std::size_t narrow = drainage.count_narrow_holes(); narrow > 0)
     monitor.notice(
-        fmt::format("{} of {} escape holes are {:g} mm wide, as channels are: there is no place for {:g} mm "
+        fmt::format("{} of {} escape holes {} {:g} mm wide, as channels are: there is no place for {:g} mm "
                     "(--hole-diameter {:g} leaves out what these do not reach)",
-                    narrow, drainage.plan.holes.size(), 2 * drainage.request.narrow_hole_radius,
-                    2 * drainage.request.hole_radius, 2 * drainage.request.hole_radius));
+                    narrow, drainage.plan.holes.size(), narrow == 1 ? "is" : "are",
+                    2 * drainage.request.narrow_hole_radius, 2 * drainage.request.hole_radius,
+                    2 * drainage.request.hole_radius));
   const TrappedPools& pools = drainage.plan.pools;
   if (pools.after_both > kPoolsAimedAt * pools.total)
     monitor.notice(fmt::format(
@@ -212,6 +215,21 @@ auto rather_off_plate(DrainageRequest request, const DrainedUnder& drained_under
   return anywhere;
 }
 
+// What stands in the way at the last of the tubes of cells that were refused.
+FailureError too_many_refused(const Tube& tube, bool is_uncut, const Roof& roof) {
+  const std::string place =
+      fmt::format("near ({:.3f}, {:.3f}, {:.3f}) mm", tube.start.x, tube.start.y, tube.start.z);
+  if (is_uncut)
+    return FailureError(fmt::format("the surfaces at a tube {} cannot be cut", place),
+                        "raise --tolerance, or give another --channel-diameter or --hole-diameter");
+  return FailureError(
+      fmt::format(
+          "the ceilings at a tube {} would join to one wider than --bridge {:g} mm, and so they would "
+          "at {} other places",
+          place, roof.bridge(), kMostRefused),
+      "give a smaller --channel-diameter and --hole-diameter, a larger --bridge, or --shape spheres");
+}
+
 }  // namespace
 
 std::size_t DrainedVoids::count_narrow_holes() const {
@@ -287,11 +305,7 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
         return {std::move(kept), std::move(voids), std::move(*solid)};
       }
       for (const Tube& tube : unfit) {
-        if (refused.size() >= kMostRefused)
-          throw FailureError(
-              fmt::format("the surfaces at a tube near ({:.3f}, {:.3f}, {:.3f}) mm cannot be cut",
-                          tube.start.x, tube.start.y, tube.start.z),
-              "raise --tolerance, or give another --channel-diameter or --hole-diameter");
+        if (refused.size() >= kMostRefused) throw too_many_refused(tube, solid == nullptr, limits.roof);
         refused.push_back(tube);
       }
     }
