@@ -112,7 +112,7 @@ constexpr double kMostlyOverlapped = 0.5;
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: parts overlap in {:.5g} of {:.5g} mm3, which stay solid", file,
                     model.inspection.overlapped_volume, model.inspection.filled_volume),
-        "--surface remesh of 'aerate hollow' unites the parts");
+        "'aerate hollow --surface remesh' unites the parts");
   }
   if (fitting <= 0) {
     throw NothingToRemoveError(
@@ -213,8 +213,8 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
 
   if (model.inspection.parts_overlap() && packing.statistics.overlapped_region > 0)
     monitor.notice(
-        fmt::format("parts of the model overlap in about {:.3g} mm3, which stay solid; --surface "
-                    "remesh unites the parts first",
+        fmt::format("parts of the model overlap in about {:.3g} mm3, which stay solid; 'aerate hollow "
+                    "--surface remesh' unites the parts first",
                     model.inspection.overlapped_volume));
   return {std::move(packing), std::move(surface)};
 }

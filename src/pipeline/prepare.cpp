@@ -93,9 +93,9 @@ double weld_tolerance(const Inspection& inspection, const SurfacePolicy& policy)
   throw MeshError(
       fmt::format("{}: {}", name_of(model), holes_in_words(model.inspection)),
       holes_are_small(model.inspection, policy)
-          ? "try --surface remesh, which closes holes of this size"
+          ? "try 'aerate hollow --surface remesh', which closes holes of this size"
           : fmt::format("holes of more than {:.3g} mm are not closed unasked: close it in a mesh editor, or "
-                        "let --surface remesh span it with --max-hole {}",
+                        "let 'aerate hollow --surface remesh' span it with --max-hole {}",
                         hole_limit(model.inspection, policy), at_least(largest)));
 }
 
