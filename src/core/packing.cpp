@@ -3,8 +3,12 @@
 namespace aerate {
 
 double total_volume(const Packing& packing) {
+  return total_volume(packing.spheres, packing.limits.roof);
+}
+
+double total_volume(std::span<const Sphere> spheres, const Roof& roof) {
   double sum = 0;
-  for (const Sphere& sphere : packing.spheres) sum += void_volume(packing.limits.roof, sphere.radius);
+  for (const Sphere& sphere : spheres) sum += void_volume(roof, sphere.radius);
   return sum;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/device.h"
@@ -47,5 +48,7 @@ struct Packing {
 
 // Sum of the voids' volumes, their roofs included, mm3.
 double total_volume(const Packing& packing);
+// The same of spheres with these roofs.
+double total_volume(std::span<const Sphere> spheres, const Roof& roof);
 
 }  // namespace aerate

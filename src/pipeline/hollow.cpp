@@ -60,7 +60,9 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.method = name_of_method(options.packing);
   report.packing_statistics = hollowed.packing.statistics;
   report.cells = options.cells;
-  report.packing_density = total_volume(hollowed.packing) / model.inspection.filled_volume;
+  const Roof roof_of_spheres = hollowed.request.sphere_limits().roof;
+  report.packing_density =
+      total_volume(hollowed.packing.spheres, roof_of_spheres) / model.inspection.filled_volume;
   report.packing_device = hollowed.packing.device;
   report.surface = surface_of(model);
   if (model.level_set) report.voxel_size = model.level_set->voxel_size();
