@@ -92,8 +92,12 @@ std::string ConfigFile::path() const {
   return option_->count() > 0 ? option_->as<std::string>() : std::string();
 }
 
+bool ConfigFile::is_on_command_line(const CLI::Option& option) const {
+  return !read_->contains(option.get_name());
+}
+
 std::string ConfigFile::origin_of(const CLI::Option& option) const {
-  return read_->contains(option.get_name()) ? "configuration file" : "command line";
+  return is_on_command_line(option) ? "command line" : "configuration file";
 }
 
 }  // namespace aerate::cli

@@ -21,6 +21,9 @@ class ConfigFile {
   // The file, if one was given.
   std::string path() const;
 
+  // Whether an option that was given was given there.
+  bool is_on_command_line(const CLI::Option& option) const;
+
   // Where the value of an option that was given came from: "command line" or "configuration file".
   std::string origin_of(const CLI::Option& option) const;
 

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "cli/void_options.h"
 #include "core/error.h"
 
 namespace aerate::cli {
 
-FormOptions::FormOptions(CLI::App& command, const ConfigFile& config) : packing_(command, config) {
+FormOptions::FormOptions(CLI::App& command, const ConfigFile& config)
+    : packing_(command, config), modifier_options_(config) {
   add_tolerance(command, tolerance_);
   command
       .add_option("--as", as_,
@@ -16,12 +16,13 @@ FormOptions::FormOptions(CLI::App& command, const ConfigFile& config) : packing_
       ->check(CLI::IsMember({"auto", "voids", "modifiers"}))
       ->type_name("FORM")
       ->capture_default_str();
-  add_modifier_infill(command, modifier_infill_percent_);
+  modifier_options_.add(add_modifier_infill(command, modifier_infill_percent_));
   command.add_option("--slicer-path", slicer_path_, "The slicer's program (default: looked for on the PATH)")
       ->type_name("FILE");
 }
 
 FormRequest FormOptions::request(const ModelOptions& model) const {
+  if (as_ == "voids") modifier_options_.require_none("with --as voids");
   FormRequest request;
   request.slicer_path = slicer_path_;
   if (as_ != "auto") request.form = as_ == "voids" ? PrintForm::voids : PrintForm::modifiers;
@@ -37,7 +38,7 @@ FormRequest FormOptions::request(const ModelOptions& model) const {
         fmt::format("process {} prints no filament, and these slicers do nothing else", process.name),
         "make a model with voids that drain by 'aerate hollow', and open it in the slicer of your printer");
   options.tolerance = tolerance_;
-  require_tolerance_for(options.packing.limits(), tolerance_);
+  require_tolerance_for(options.packing.process, tolerance_);
   return request;
 }
 

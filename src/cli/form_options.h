@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/model_options.h"
+#include "cli/void_options.h"
 #include "pipeline/options.h"
 #include "pipeline/print_forms.h"
 
@@ -23,6 +24,7 @@ struct FormOptions {
   double tolerance_ = HollowOptions{}.tolerance;
   std::string as_ = "auto";
   double modifier_infill_percent_ = 0;
+  ModifierOnlyOptions modifier_options_;
   std::string slicer_path_;
 };
 

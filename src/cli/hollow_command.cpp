@@ -79,7 +79,8 @@ struct HollowCommand {
         drainage(command, config),
         cells(command, words_of_cells()),
         print(command),
-        run_options(command) {
+        run_options(command),
+        modifier_options(config) {
     command.add_option("-o,--output", output, "The result: " + endings_that_are_written() + " (required)")
         ->required()
         ->type_name("FILE");
@@ -90,11 +91,13 @@ struct HollowCommand {
         ->check(CLI::IsMember({"voids", "modifiers"}))
         ->type_name("FORM")
         ->capture_default_str();
-    command.add_option("--flavor", flavor, "Whose modifiers: " + listed(of_slicers(described_flavor), "or"))
-        ->check(CLI::IsMember(of_slicers(flavor_of)))
-        ->type_name("FLAVOR")
-        ->capture_default_str();
-    add_modifier_infill(command, modifier_infill);
+    modifier_options.add(
+        command
+            .add_option("--flavor", flavor, "Whose modifiers: " + listed(of_slicers(described_flavor), "or"))
+            ->check(CLI::IsMember(of_slicers(flavor_of)))
+            ->type_name("FLAVOR")
+            ->capture_default_str());
+    modifier_options.add(add_modifier_infill(command, modifier_infill));
     command
         .add_option(
             "--spheres", spheres,
@@ -149,18 +152,20 @@ struct HollowCommand {
         std::map<std::string, SurfaceMode>{
             {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}
             .at(surface);
+    if (void_form == "voids") modifier_options.require_none("without --as modifiers");
     if (void_form == "modifiers")
       options.modifiers = {&*std::ranges::find(slicers(), std::vector{flavor}, flavor_of), modifier_infill};
-    options.print = print.settings(options.packing);
+    options.print = print.settings(options.packing.process.process);
+    options.infill_is_known = print.knows_infill();
     // Modifiers leave the model solid: nothing is trapped in them.
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
     if (options.modifiers) {
-      options.packing.process =
-          walled_by_perimeters(std::move(options.packing.process), options.print.value_or(PrintSettings{}));
+      options.packing.process = walled_by_perimeters(std::move(options.packing.process), options.print);
     } else {
       options = drainage.applied_to(std::move(options));
     }
+    print.require_lines_that_fit(options.packing.limits());
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
@@ -175,7 +180,7 @@ struct HollowCommand {
     options.packing = std::move(shaped.packing);
     options.cells = shaped.cells;
     options.tolerance = shaped.tolerance.value_or(options.tolerance);
-    require_tolerance_for(options.packing.limits(), options.tolerance);
+    require_tolerance_for(options.packing.process, options.tolerance);
     return options;
   }
 
@@ -185,7 +190,7 @@ struct HollowCommand {
     const std::optional<bool> asked = cells.asks_for_cells();
     const bool makes_cells = asked.value_or(is_cells_unasked(options));
     std::vector<HollowOptions> forms{shaped(options, makes_cells)};
-    const bool can_compare = options.drainage || options.print;
+    const bool can_compare = options.drainage || options.infill_is_known;
     if (asked || cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
     try {
       forms.push_back(shaped(options, !makes_cells));
@@ -222,6 +227,7 @@ struct HollowCommand {
   CellCommandOptions cells;
   PrintOptions print;
   RunOptions run_options;
+  ModifierOnlyOptions modifier_options;
   std::string output;
   std::string void_form = "voids";
   std::string flavor = of_slicers(flavor_of).front();

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <string>
@@ -9,8 +10,10 @@
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
 #include "cli/void_options.h"
+#include "core/error.h"
 #include "files/cell_table.h"
 #include "files/formats.h"
+#include "files/sphere_table.h"
 #include "pipeline/pack.h"
 
 namespace aerate::cli {
@@ -25,6 +28,17 @@ CellWords words_of_cells() {
       .tolerance = fmt::format("Cells: surfaces of their pieces stay this far inside their shapes at most "
                                "(default {:g})",
                                kCellTolerance)};
+}
+
+// Throws UsageError for spheres as a mesh.
+void require_table(const std::filesystem::path& output) {
+  const MeshFormat* const mesh = find_format_to_write(output);
+  if (mesh == nullptr || find_sphere_format(output)) return;
+  throw UsageError(
+      fmt::format("{}: spheres cannot be written as {}", output.string(), mesh->ending),
+      fmt::format("give --shape cells for cells as {}, or a name that ends in .csv, .json or .ply for "
+                  "a table of spheres",
+                  mesh->ending));
 }
 
 struct PackCommand {
@@ -50,6 +64,7 @@ struct PackCommand {
     options.packing = std::move(shaped.packing);
     options.cells = shaped.cells;
     options.tolerance = shaped.tolerance.value_or(options.tolerance);
+    if (!options.cells) require_table(options.output);
     if (!options.cells)
       cells.require_neither_fillet_nor_tolerance("without --shape cells", "spheres are written as they are");
     else if (find_cell_table_format(options.output))
@@ -57,7 +72,9 @@ struct PackCommand {
           "with " + options.output.string(),
           fmt::format("planes are exact and have no edges; a name that ends in {} is for pieces, which have",
                       endings_that_are_written()));
-    if (options.cells) require_tolerance_for(options.packing.limits(), options.tolerance);
+    // Planes are exact.
+    if (options.cells && !find_cell_table_format(options.output))
+      require_tolerance_for(options.packing.process, options.tolerance);
     return options;
   }
 

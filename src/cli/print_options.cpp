@@ -1,5 +1,6 @@
 #include "cli/print_options.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <string>
 #include <string_view>
@@ -20,23 +21,6 @@ std::optional<double> parse_percent(std::string_view text) {
   return *percent / 100;
 }
 
-void require_lines_that_fit(const PrintSettings& settings, const PackingLimits& limits) {
-  if (settings.layer_height > settings.line_width) {
-    throw UsageError(fmt::format("--layer-height {:g} mm is more than --line-width {:g} mm",
-                                 settings.layer_height, settings.line_width),
-                     "a line is wider than it is high");
-  }
-  const auto require = [&](double thickness, const char* option) {
-    if (thickness < settings.line_width) {
-      throw UsageError(
-          fmt::format("{} {:g} mm is less than --line-width {:g} mm", option, thickness, settings.line_width),
-          fmt::format("nothing thinner than a line can be printed: give a larger {}", option));
-    }
-  };
-  require(limits.wall, "--wall");
-  require(limits.gap, "--gap");
-}
-
 }  // namespace
 
 PrintOptions::PrintOptions(CLI::App& command) {
@@ -50,9 +34,10 @@ PrintOptions::PrintOptions(CLI::App& command) {
           ->check(parsed_by(parse_percent, "is not a share from 0% to 100%"))
           ->type_name("PERCENT")
           ->group(kGroup);
+  options_.push_back(infill_option_);
   const auto add = [&](const char* name, auto& value, const char* what) {
     CLI::Option* option = command.add_option(name, value, what)->group(kGroup)->capture_default_str();
-    option->needs(infill_option_);
+    options_.push_back(option);
     return option;
   };
   add("--infill-pattern", pattern_, "gyroid, or lines for any pattern of straight lines")
@@ -78,19 +63,41 @@ PrintOptions::PrintOptions(CLI::App& command) {
       ->group(kGroup);
 }
 
-std::optional<PrintSettings> PrintOptions::settings(const PackingRequest& packing) const {
-  if (infill_option_->count() == 0) return std::nullopt;
-  const Process& process = packing.process.process;
-  if (process.drainage == Drainage::needed) {
-    throw UsageError(fmt::format("--infill {} contradicts --process {}, which prints solid material", infill_,
-                                 process.name),
+const CLI::Option* PrintOptions::given() const {
+  const auto found = std::ranges::find_if(options_, [](const auto* option) { return option->count() > 0; });
+  return found == options_.end() ? nullptr : *found;
+}
+
+PrintSettings PrintOptions::settings(const Process& process) const {
+  const CLI::Option* const described = given();
+  if (described != nullptr && process.drainage == Drainage::needed) {
+    throw UsageError(fmt::format("{} {} contradicts --process {}, which prints solid material",
+                                 described->get_name(), described->results().front(), process.name),
                      "leave one of them out");
   }
   PrintSettings settings = settings_;
-  settings.infill = parse_percent(infill_).value();
+  if (knows_infill()) settings.infill = parse_percent(infill_).value();
   settings.pattern = pattern_ == "gyroid" ? InfillPattern::gyroid : InfillPattern::lines;
-  require_lines_that_fit(settings, packing.limits());
   return settings;
+}
+
+void PrintOptions::require_lines_that_fit(const PackingLimits& limits) const {
+  if (given() == nullptr) return;
+  const PrintSettings& settings = settings_;
+  if (settings.layer_height > settings.line_width) {
+    throw UsageError(fmt::format("--layer-height {:g} mm is more than --line-width {:g} mm",
+                                 settings.layer_height, settings.line_width),
+                     "a line is wider than it is high");
+  }
+  const auto require = [&](double thickness, const char* option) {
+    if (thickness < settings.line_width) {
+      throw UsageError(
+          fmt::format("{} {:g} mm is less than --line-width {:g} mm", option, thickness, settings.line_width),
+          fmt::format("nothing thinner than a line can be printed: give a larger {}", option));
+    }
+  };
+  require(limits.wall, "--wall");
+  require(limits.gap, "--gap");
 }
 
 }  // namespace aerate::cli

@@ -169,8 +169,9 @@ const char* in_words(TimeChange change) {
 }
 
 std::string in_words(const PrintSettings& settings) {
-  return fmt::format("{} perimeters of {:g} mm, {:g} mm layers, {} and {} solid", settings.perimeters,
-                     settings.line_width, settings.layer_height, settings.top_layers, settings.bottom_layers);
+  return fmt::format("{} {} of {:g} mm, {:g} mm layers, {} and {} solid", settings.perimeters,
+                     settings.perimeters == 1 ? "perimeter" : "perimeters", settings.line_width,
+                     settings.layer_height, settings.top_layers, settings.bottom_layers);
 }
 
 // What the figures for material mean, and from which infill on they save.
@@ -284,7 +285,7 @@ std::string to_text(const HollowReport& report) {
   add_input(lines, report.input);
   add_limits(lines, report.process);
   add_packing(lines, "voids",
-              report.cells ? count_of(output.void_count, "cell", "cells") + " round spheres"
+              report.cells ? count_of(output.void_count, "cell round a sphere", "cells round spheres")
                            : count_of(output.void_count, "sphere", "spheres"),
               radii(output.smallest_radius, output.largest_radius), report.method, report.packing_density,
               report.packing_device);

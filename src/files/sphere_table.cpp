@@ -198,11 +198,17 @@ const char* name_of(SphereKind kind) {
   return kKindNames[static_cast<std::size_t>(kind)];
 }
 
-SphereFormat sphere_format_of(const std::filesystem::path& path) {
+std::optional<SphereFormat> find_sphere_format(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
   for (const SphereFormat& format : {SphereFormat::csv, SphereFormat::json, SphereFormat::ply}) {
     if (ending == format.ending) return format;
   }
+  return std::nullopt;
+}
+
+SphereFormat sphere_format_of(const std::filesystem::path& path) {
+  if (const auto format = find_sphere_format(path)) return *format;
+  const std::string ending = ending_of(path);
   throw UsageError(fmt::format("{}: spheres cannot be written or read as {}", path.string(),
                                ending.empty() ? "a file without an ending" : ending),
                    "use a name that ends in .csv, .json or .ply");

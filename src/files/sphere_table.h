@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,10 @@ struct SphereFormat {
   static const SphereFormat ply;
 };
 
-// From the file name's ending (any case). Throws UsageError for another one.
+// From the file name's ending (any case), if it is one of these.
+std::optional<SphereFormat> find_sphere_format(const std::filesystem::path& path);
+
+// The same. Throws UsageError for another ending.
 SphereFormat sphere_format_of(const std::filesystem::path& path);
 
 std::string sphere_table(const Packing& packing, const SphereFormat& format);

@@ -95,7 +95,7 @@ HollowedForm carve_best_form(std::span<const HollowOptions> forms, Monitor& moni
       if (error.code() == ExitCode::interrupted || (is_preferred && !may_be_done_otherwise(error))) throw;
       if (is_preferred) refusal = error;
     }
-    if (best && !preferred.print && !leaves_out_much(*best)) break;
+    if (best && !preferred.infill_is_known && !leaves_out_much(*best)) break;
   }
   if (!best) throw Error(*refusal);
   if (refusal)

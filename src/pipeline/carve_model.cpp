@@ -16,7 +16,10 @@ namespace {
 // Refuses what cannot be made before the long stages, and says what sealed voids would mean.
 PackingRequest request_of(const HollowOptions& options, Monitor& monitor) {
   // Modifiers have no walls to pay for, and leave the model solid.
-  if (options.modifiers) return options.packing;
+  if (options.modifiers) {
+    require_modifiers_that_save(options);
+    return options.packing;
+  }
   PackingRequest request = without_voids_that_cost(options.packing, options, monitor);
   if (options.drainage) {
     require_room_for_tubes(*options.drainage, request.limits());

@@ -118,8 +118,10 @@ struct HollowOptions {
 
   Material material;
 
-  // How filament is printed, if that was said; else figures are for solid material.
-  std::optional<PrintSettings> print;
+  // How filament is printed.
+  PrintSettings print;
+  // Whether its infill was said; else figures are for solid material.
+  bool infill_is_known = false;
   HeavierPrint heavier = HeavierPrint::refuse;
 };
 

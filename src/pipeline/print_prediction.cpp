@@ -54,19 +54,20 @@ constexpr const char* kOtherWays =
 }
 
 std::string change_in_words(const PrintPrediction& prediction) {
-  return fmt::format("{:.2f} instead of {:.2f} cm3 of filament ({:+.1f} %) at {:g} % infill",
+  return fmt::format("{:.2f} instead of {:.2f} cm3 of filament ({:+.1f} %) at {:g} % infill{}",
                      prediction.filament_after_mm3 / 1000, prediction.filament_before_mm3 / 1000,
                      in_percent(prediction.filament_after_mm3 / prediction.filament_before_mm3 - 1),
-                     in_percent(prediction.settings.infill));
+                     in_percent(prediction.settings.infill),
+                     prediction.described ? "" : ", which is assumed");
 }
 
 // What modifiers are assumed to be printed in unless the print is described.
 constexpr double kUsualInfill = 0.15;
 
 PrintSettings settings_of(const HollowOptions& options) {
-  PrintSettings settings = options.print.value_or(PrintSettings{});
+  PrintSettings settings = options.print;
   if (options.modifiers) {
-    if (!options.print) settings.infill = kUsualInfill;
+    if (!options.infill_is_known) settings.infill = kUsualInfill;
     settings.modifier_infill = options.modifiers->infill_percent / 100;
   }
   return settings;
@@ -99,8 +100,9 @@ std::string what_else(const PrintPrediction& prediction, const HollowOptions& op
     return fmt::format("these voids {}; {}", saving_infill(prediction.break_even_infill), kOtherWays);
   return fmt::format(
       "infill is joined along the border of modifiers, which costs more than these save: they {}; larger "
-      "ones (--shape cells, --min-radius, --max-radius) or {} cost less; --force writes these all the same",
+      "ones ({}) or {} cost less; --force writes these all the same",
       saving_infill(prediction.break_even_infill),
+      options.cells ? "--cell-size" : "--shape cells, --min-radius, --max-radius",
       options.modifiers->infill_percent > 0 ? "a lower --modifier-infill" : "a thinner --wall");
 }
 
@@ -113,8 +115,9 @@ std::string where_voids_pay(double radius, const PrintSettings& settings) {
 
 PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptions& options,
                                        Monitor& monitor) {
-  if (!options.print || options.heavier == HeavierPrint::allow || !request.spheres.empty()) return request;
-  const PrintSettings& settings = *options.print;
+  if (!options.infill_is_known || options.heavier == HeavierPrint::allow || !request.spheres.empty())
+    return request;
+  const PrintSettings& settings = options.print;
   const PackingLimits limits = request.limits();
   const auto least_radius = break_even_radius(settings);
   // A cell about a sphere has as much wall for its volume as the sphere itself, but reaches further. Whether all of them
@@ -136,13 +139,30 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
   return request;
 }
 
+void require_modifiers_that_save(const HollowOptions& options) {
+  if (!options.modifiers || options.heavier == HeavierPrint::allow) return;
+  const bool is_known = options.infill_is_known;
+  const double within = options.modifiers->infill_percent;
+  const double around = is_known ? in_percent(options.print.infill) : 100;  // else the most that there is
+  if (within < around) return;
+  const char* const force = is_known ? "; --force writes these all the same" : "";
+  if (around == 0)
+    throw NothingToRemoveError(
+        "nothing would be saved: a print of 0 % infill has none that modifiers could lower",
+        std::string("print the model as it is, or give the --infill that it has") + force);
+  throw NothingToRemoveError(
+      fmt::format("nothing would be saved: modifiers of {:g} % infill in a print of {:g} %{}", within, around,
+                  is_known ? "" : " at most"),
+      fmt::format("give a --modifier-infill below {:g}; 0 saves most{}", around, force));
+}
+
 std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
                                              const HollowOptions& options, Monitor& monitor) {
   const bool prints_filament = options.packing.process.process.drainage == Drainage::not_needed;
   if (!prints_filament) return std::nullopt;
   monitor.stage("predict");
   PrintPrediction prediction;
-  prediction.described = options.print.has_value();
+  prediction.described = options.infill_is_known;
   prediction.settings = settings_of(options);
   const PrintSettings& settings = prediction.settings;
   const UprightFrame frame(packing.limits.roof.up);

@@ -130,11 +130,17 @@ ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_s
   return choice;
 }
 
+bool is_lowered_for_cells(const ProcessChoice& choice) {
+  const double least = choice.limits.at(Limit::min_radius).value;
+  return is_default(choice, Limit::min_radius) && least < choice.process.limits.at(Limit::min_radius).value;
+}
+
 ProcessChoice evenly_large(ProcessChoice choice, double fitting) {
   if (!is_default(choice, Limit::min_radius)) return choice;
   LimitValue& least = choice.limits.at(Limit::min_radius);
   const double half = std::min(fitting, choice.limits.at(Limit::max_radius).value) / 2;
-  if (half > least.value) least = {half, "", "half of the largest, for cells"};
+  if (half > least.value || is_lowered_for_cells(choice))
+    least = {std::max(half, least.value), "", "half of the largest, for cells"};
   return choice;
 }
 

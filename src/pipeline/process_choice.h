@@ -61,6 +61,9 @@ ProcessChoice evenly_large(ProcessChoice choice, double fitting);
 // Whether a limit is what the process gives.
 bool is_default(const ProcessChoice& choice, Limit limit);
 
+// Whether the process's least radius was halved with the largest one, for cells of --cell-size.
+bool is_lowered_for_cells(const ProcessChoice& choice);
+
 // For voids that become modifiers, round which the slicer prints the walls it prints anyway: unless the user or a process
 // file gave the wall, it is as thick as these. What lies between would be filled by a strip of infill that carries nothing.
 ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& settings);

@@ -112,6 +112,13 @@ TEST(CellsCommand, ModifiersAreCellsBehindThePerimetersAndLeaveTheModelSolid) {
   EXPECT_GE(report["measured"]["wall_mm"].get<double>(), 0.9 - 1e-6);
   const Json three = modifiers_of({"--infill", "15%", "--perimeters", "3", "--line-width", "0.5"});
   EXPECT_EQ(three["limits"]["wall_mm"], 1.5);
+  // Without the infill as well, and for lines wider than the process's own wall.
+  const Json unknown = modifiers_of({"--perimeters", "3", "--line-width", "0.5"});
+  EXPECT_EQ(unknown["limits"]["wall_mm"], 1.5);
+  EXPECT_EQ(unknown["print"]["perimeters"], 3);
+  EXPECT_FALSE(unknown["print"]["described"].get<bool>());
+  const Json wide = modifiers_of({"--line-width", "1.3", "--gap", "1.3"});
+  EXPECT_EQ(wide["limits"]["wall_mm"], 2.6);
 }
 
 TEST(CellsCommand, ModifiersKeepTheShapeAndTheWallThatAreAskedFor) {
@@ -123,6 +130,16 @@ TEST(CellsCommand, ModifiersKeepTheShapeAndTheWallThatAreAskedFor) {
   const Json thick = modifiers_of({"--wall", "2"});
   EXPECT_EQ(thick["voids"]["shape"], "cells");
   EXPECT_EQ(thick["limits"]["wall_mm"], 2.0);
+}
+
+TEST(CellsCommand, TheTextCountsInTheSingularToo) {
+  const Job job;
+  const std::string block = job.input("block.stl", make_box({0, 0, 0}, {14, 14, 14}));
+  const std::string one = run(job.hollow(block, {"--shape", "cells", "--max-voids", "1"})).out;
+  EXPECT_TRUE(contains(one, "1 cell round a sphere, radius")) << one;
+  const std::string bar = job.input("bar.stl", make_box({0, 0, 0}, {40, 14, 14}));
+  const std::string some = run(job.hollow(bar, {"--shape", "cells"})).out;
+  EXPECT_TRUE(contains(some, " cells round spheres, radius")) << some;
 }
 
 TEST(CellsCommand, AFilletIsOneOfCells) {

@@ -86,6 +86,7 @@ TEST(PackCells, PiecesAreWhatHollowRemoves) {
     EXPECT_EQ(pieces["ceilings"], hollowed["ceilings"]);
     EXPECT_EQ(packed["process"], hollowed["process"]);
     EXPECT_EQ(packed["packing"]["candidates"], hollowed["packing"]["candidates"]);
+    EXPECT_EQ(packed["packing"]["density"], hollowed["packing"]["density"]);
     EXPECT_EQ(packed["limits"]["bridge_mm"], hollowed["limits"]["bridge_mm"]);
 
     // To the last bit, but that they face outward.
@@ -237,13 +238,51 @@ TEST(PackCells, OptionsThatHaveNoEffectAreRefused) {
                  "--cell-size and --max-radius");
 }
 
+TEST(PackCells, SmallSpheresNeedAFineToleranceForPiecesAlone) {
+  const Job job;
+  const auto model = job.input("block.stl", make_box({0, 0, 0}, {8, 8, 8}));
+  for (const std::vector<std::string>& small :
+       {std::vector<std::string>{"--min-radius", "0.1"}, std::vector<std::string>{"--cell-size", "1.6"}}) {
+    expect_refused(job, pack_cells(model, job.output(), small), kUsage, small[0] + " " + small[1] + " mm");
+    ASSERT_EQ(run(pack_cells(model, job.output("out.csv"), small)).exit_code, 0);
+    std::filesystem::remove(job.output("out.csv"));
+  }
+}
+
+// The radius that follows from the size is not the user's.
+TEST(PackCells, CellsTooSmallForTheToleranceAreToldBySize) {
+  const Job job;
+  const auto model = job.input("block.stl", make_box({0, 0, 0}, {8, 8, 8}));
+  const auto of_size = [&](const char* size) {
+    return pack_cells(model, job.output(), {"--cell-size", size, "--fillet", "0.3"});
+  };
+  const ProcessResult refused = run(of_size("1.6"));
+  EXPECT_EQ(refused.exit_code, kUsage);
+  EXPECT_TRUE(contains(refused.err, "hint: give a --cell-size of 1.8 mm or more")) << refused.err;
+  EXPECT_FALSE(contains(refused.err, "--min-radius"));
+  const Json report = report_of(of_size("1.8"));
+  EXPECT_TRUE(contains(report["process"]["limits"].dump(), "half of the largest, for cells"));
+  EXPECT_FALSE(contains(report["process"]["limits"].dump(), "\"limit\":\"min-radius\",\"origin\":\"default"));
+}
+
+TEST(PackCells, HintsNameNoOptionsOfOtherCommandsAsTheirOwn) {
+  const Job job;
+  Mesh open = block();
+  open.triangles.pop_back();
+  constexpr int kUnusable = 4;
+  expect_refused(job, pack(job.input("open.stl", open), job.output("out.csv"), {}), kUnusable,
+                 "'aerate hollow --surface remesh'");
+}
+
 TEST(PackCells, WhatCannotBeWrittenIsRefused) {
   const Job job;
   const auto model = job.input("block.stl", block());
   for (const char* name : {"out.txt", "out", "out.off"})
     expect_refused(job, pack_cells(model, job.output(name)), kUsage, "cells cannot be written as");
-  expect_refused(job, pack(model, job.output("out.stl"), {}), kUsage,
-                 "spheres cannot be written or read as .stl");
+  expect_refused(job, pack(model, job.output("out.stl"), {}), kUsage, "spheres cannot be written as .stl");
+  expect_refused(job, pack(model, job.output("out.stl"), {}), kUsage, "hint: give --shape cells");
+  expect_refused(job, pack(model, job.output("out.off"), {}), kUsage,
+                 "spheres cannot be written or read as .off");
   expect_refused(job, pack_cells(model, model), kUsage, "the output is the model itself");
 }
 

@@ -83,6 +83,73 @@ TEST(PrintOptions, ModifiersThatMakeAPrintHeavierAreRefused) {
   EXPECT_TRUE(cells["print"]["break_even_radius_mm"].is_null());
 }
 
+// Nothing, or less than nothing, would be saved.
+TEST(PrintOptions, ModifiersWithoutLessInfillAreRefused) {
+  const Job job;
+  const auto model = job.input("model.stl", make_box({0, 0, 0}, {20, 20, 20}));
+  const auto modifiers = [&](const std::vector<std::string>& options) {
+    return run(with(
+        {AERATE_EXECUTABLE, "hollow", model, "-o", job.output("out.3mf"), "--as", "modifiers", "--json", "-"},
+        options));
+  };
+  struct Case {
+    std::vector<std::string> options;
+    std::string said;
+  };
+  for (const Case& each :
+       {Case{{"--infill", "0"}, "a print of 0 % infill has none that modifiers could lower"},
+        Case{{"--infill", "0", "--modifier-infill", "10"}, "a print of 0 % infill has none"},
+        Case{{"--infill", "15%", "--modifier-infill", "15"}, "modifiers of 15 % infill in a print of 15 %"},
+        Case{{"--infill", "15%", "--modifier-infill", "40"}, "give a --modifier-infill below 15"},
+        Case{{"--modifier-infill", "100"}, "modifiers of 100 % infill in a print of 100 % at most"}}) {
+    const ProcessResult refused = modifiers(each.options);
+    EXPECT_EQ(refused.exit_code, kNothing) << each.said;
+    EXPECT_TRUE(contains(refused.err, "nothing would be saved: ")) << refused.err;
+    EXPECT_TRUE(contains(refused.err, each.said)) << refused.err;
+    EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+  }
+  EXPECT_EQ(modifiers({"--infill", "15%", "--modifier-infill", "40", "--force"}).exit_code, 0);
+  // That of the print is not known.
+  const ProcessResult assumed = modifiers({"--modifier-infill", "40"});
+  EXPECT_EQ(assumed.exit_code, 0);
+  EXPECT_TRUE(contains(assumed.err, "at 15 % infill, which is assumed")) << assumed.err;
+}
+
+TEST(PrintOptions, OptionsOfModifiersAreRefusedForVoids) {
+  const Job job;
+  expect_refused(job, {"--flavor", "orca"}, kUsage, {"--flavor without --as modifiers has no effect"});
+  expect_refused(job, {"--as", "voids", "--modifier-infill", "5"}, kUsage,
+                 {"--modifier-infill without --as modifiers has no effect"});
+  const ProcessResult sliced =
+      run({AERATE_EXECUTABLE, "slice", job.input("model.stl", block()), "-o", job.output("out.gcode"),
+           "--slicer", "prusa-slicer", "--as", "voids", "--modifier-infill", "5"});
+  EXPECT_EQ(sliced.exit_code, kUsage);
+  EXPECT_TRUE(contains(sliced.err, "--modifier-infill with --as voids has no effect")) << sliced.err;
+  // A configuration file may hold them for other runs.
+  const auto config = job.input("aerate.toml", "[hollow]\nflavor = \"orca\"\nmodifier-infill = 5\n");
+  EXPECT_EQ(run({AERATE_EXECUTABLE, "--config", config, "hollow", job.input("model.stl", block()), "-o",
+                 job.output(), "--max-voids", "1"})
+                .exit_code,
+            0);
+}
+
+TEST(PrintOptions, HintsForModifiersThatAreCellsDoNotProposeCells) {
+  const Job job;
+  const auto refused = [&](const char* shape) {
+    return run({AERATE_EXECUTABLE, "hollow", job.input("model.stl", block()), "-o", job.output("out.3mf"),
+                "--as", "modifiers", "--infill", "15%", "--modifier-infill", "14", "--max-radius", "3",
+                "--shape", shape});
+  };
+  const ProcessResult cells = refused("cells"), spheres = refused("spheres");
+  for (const ProcessResult& each : {cells, spheres}) {
+    EXPECT_EQ(each.exit_code, kNothing);
+    EXPECT_TRUE(contains(each.err, "would become heavier")) << each.err;
+  }
+  EXPECT_FALSE(contains(cells.err, "--shape cells")) << cells.err;
+  EXPECT_TRUE(contains(cells.err, "larger ones (--cell-size)")) << cells.err;
+  EXPECT_TRUE(contains(spheres.err, "--shape cells")) << spheres.err;
+}
+
 // Closer to no change than the prediction is to the slicer.
 TEST(PrintOptions, APrintThatMayBecomeHeavierIsSaidSo) {
   const Job job;
@@ -149,6 +216,20 @@ TEST(PrintOptions, FiguresForMaterialAreThoseOfThePrint) {
   EXPECT_EQ(report["material"]["assumes"], "the predicted filament");
 }
 
+// The infill above which voids save depends on the walls round them.
+TEST(PrintOptions, ThePrintMayBeDescribedWithoutItsInfill) {
+  const Job job;
+  const std::vector<std::string> few{"--max-voids", "4"};
+  const auto break_even = [&](const std::vector<std::string>& options) {
+    const Json print = report_of(job, block(), with(few, options))["print"];
+    EXPECT_FALSE(print["described"].get<bool>());
+    return print["break_even_infill_percent"].get<double>();
+  };
+  EXPECT_GT(break_even({"--perimeters", "4"}), break_even({}));
+  const ProcessResult text = hollow(job, block(), with(few, {"--perimeters", "1", "--line-width", "0.5"}));
+  EXPECT_TRUE(contains(text.out, "(1 perimeter of 0.5 mm, ")) << text.out;
+}
+
 TEST(PrintOptions, WhatPrintsNoFilamentIsNotPredicted) {
   const Job job;
   EXPECT_TRUE(report_of(job, make_box({0, 0, 0}, {40, 40, 40}), {"--process", "sls"})["print"].is_null());
@@ -169,7 +250,8 @@ TEST(PrintOptions, ThatMakeNoSense) {
   refused({"--infill", "100%", "--wall", "0.3"}, {"--wall 0.3 mm", "--line-width 0.45 mm"});
   refused({"--infill", "100%", "--infill-pattern", "stars"}, {"stars"});
   refused({"--infill", "15%", "--process", "sla"}, {"--infill 15%", "--process sla"});
-  refused({"--perimeters", "3"}, {"--perimeters", "--infill"});
+  refused({"--perimeters", "3", "--process", "sla"}, {"--perimeters 3", "--process sla"});
+  refused({"--layer-height", "0.6"}, {"--layer-height 0.6 mm", "--line-width 0.45 mm"});
   refused({"--force"}, {"--force", "--infill"});
 }
 
