@@ -15,7 +15,8 @@ CellCommandOptions::CellCommandOptions(CLI::App& command, const CellWords& words
       ->type_name("SHAPE");
   command
       .add_option("--cell-size", cell_size_,
-                  "Cells: about how far inner walls are apart (default 21, or what --max-radius gives)")
+                  "Cells: about how far inner walls are apart (default 21, or what --max-radius gives); "
+                  "--min-radius is by default half of the largest that fits")
       ->check(number_between({}, kLongest, "mm"))
       ->type_name("MM");
   command

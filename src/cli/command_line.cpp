@@ -67,8 +67,8 @@ std::string version_and_devices() {
 
 void run_command_line(int argc, const char* const* argv) {
   CLI::App app(
-      "Packs disjoint spheres inside a printable model, removes them as internal voids, and writes a\n"
-      "watertight model for any slicer.",
+      "Packs disjoint spheres inside a printable model, removes them, or the cells round them, as internal\n"
+      "voids, and writes a watertight model for any slicer.",
       "aerate");
   app.set_version_flag("--version", version_and_devices);
   app.footer(kFooter);

@@ -81,22 +81,24 @@ struct HollowCommand {
         print(command),
         run_options(command),
         modifier_options(config) {
-    command.add_option("-o,--output", output, "The result: " + endings_that_are_written() + " (required)")
+    command.add_option("-o,--output", output, "The result: " + endings_that_are_written())
         ->required()
         ->type_name("FILE");
     command
-        .add_option("--as", void_form,
-                    "What voids become: voids (inward shells) or, in a 3MF, modifiers (the solid model with "
-                    "volumes of lower infill, round which no walls are printed)")
+        .add_option(
+            "--as", void_form,
+            "What voids become: voids (inward shells) or, in a 3MF, modifiers (the solid model with "
+            "volumes of lower infill, round which no walls are printed; --wall is by default as thick as "
+            "the perimeters)")
         ->check(CLI::IsMember({"voids", "modifiers"}))
         ->type_name("FORM")
         ->capture_default_str();
-    modifier_options.add(
-        command
-            .add_option("--flavor", flavor, "Whose modifiers: " + listed(of_slicers(described_flavor), "or"))
-            ->check(CLI::IsMember(of_slicers(flavor_of)))
-            ->type_name("FLAVOR")
-            ->capture_default_str());
+    modifier_options.add(command
+                             .add_option("--flavor", flavor,
+                                         "Modifiers: those of " + listed(of_slicers(described_flavor), "or"))
+                             ->check(CLI::IsMember(of_slicers(flavor_of)))
+                             ->type_name("FLAVOR")
+                             ->capture_default_str());
     modifier_options.add(add_modifier_infill(command, modifier_infill));
     command
         .add_option(
@@ -105,7 +107,7 @@ struct HollowCommand {
         ->type_name("FILE");
     command
         .add_option("--max-triangles", max_triangles,
-                    "Loosen the tolerance until the result has at most so many triangles")
+                    "Loosen the tolerance until the result has at most so many triangles (default no limit)")
         ->check(whole_number_between(4, 4e9, "triangles"))
         ->type_name("N");
     command
@@ -131,10 +133,11 @@ struct HollowCommand {
                     "For mass and cost: " + material_names() +
                         ", or any with --density and --price (default of the process; fdm: PLA)")
         ->type_name("NAME");
-    command.add_option("--density", density, "Density of the material instead, g/cm3")
+    command.add_option("--density", density, "Density in g/cm3 (default that of the material)")
         ->check(number_between({}, 100, "g/cm3"))
         ->type_name("G/CM3");
-    command.add_option("--price", price, "Price of a kilogram of the material instead, in your currency")
+    command
+        .add_option("--price", price, "Price of a kilogram in your currency (default that of the material)")
         ->check(number_between(0.0, 1e9, "a kg"))
         ->type_name("PRICE");
   }
@@ -245,8 +248,8 @@ struct HollowCommand {
 }  // namespace
 
 void add_hollow_command(CLI::App& app, const ConfigFile& config) {
-  CLI::App& command =
-      *app.add_subcommand("hollow", "Remove packed spheres from a model and write the result");
+  CLI::App& command = *app.add_subcommand(
+      "hollow", "Remove packed spheres, or the cells round them, from a model and write the result");
   command.callback([job = std::make_shared<HollowCommand>(command, config)] { job->run(); });
 }
 

@@ -90,12 +90,16 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
       ->check(CLI::IsMember(methods))
       ->type_name("METHOD")
       ->capture_default_str();
-  command.add_option("--max-voids", max_voids_, stops + ": no more voids than this, the largest ones")
+  command
+      .add_option("--max-voids", max_voids_,
+                  stops + ": no more voids than this, the largest ones (default no limit)")
       ->check(whole_number_between(1, 4e9, "voids"))
       ->type_name("N");
   command
-      .add_option("--target-density", target_density_,
-                  stops + ": stop when voids fill this share of the model's volume, percent")
+      .add_option(
+          "--target-density", target_density_,
+          stops +
+              ": stop when spheres fill this share of the model's volume, percent (default when no more fit)")
       ->check(number_between({}, 100, "%"))
       ->type_name("PERCENT");
   command

@@ -48,7 +48,7 @@ struct PackCommand {
         .add_option("-o,--output", output,
                     "Spheres: a table, .csv (a line x,y,z,radius,kind each), .json or .ply. Cells: their "
                     "planes, .csv or .json, or their pieces as closed shells, " +
-                        endings_that_are_written() + " (required)")
+                        endings_that_are_written())
         ->required()
         ->type_name("FILE");
   }

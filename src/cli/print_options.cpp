@@ -29,8 +29,9 @@ PrintOptions::PrintOptions(CLI::App& command) {
           .add_option(
               "--infill", infill_,
               "Infill of the print; with it filament is predicted, voids that would cost more than they save "
-              "are left out, and a print that would become heavier is refused. Without it figures are for "
-              "solid material")
+              "are left out, and a print that would become heavier is refused (default: figures are for "
+              "solid "
+              "material, and for 15 % around modifiers)")
           ->check(parsed_by(parse_percent, "is not a share from 0% to 100%"))
           ->type_name("PERCENT")
           ->group(kGroup);

@@ -29,8 +29,8 @@ std::vector<std::string> described(const SlicerProfile& slicer) {
 struct SliceCommand {
   SliceCommand(CLI::App& command, const ConfigFile& config)
       : model(command), form(command, config), run_options(command) {
-    command.add_option("-o,--output", output, "The G-code (required)")->required()->type_name("FILE");
-    command.add_option("--slicer", slicer, listed(of_slicers(described), "or") + " (required)")
+    command.add_option("-o,--output", output, "The G-code")->required()->type_name("FILE");
+    command.add_option("--slicer", slicer, listed(of_slicers(described), "or"))
         ->required()
         ->check(CLI::IsMember(of_slicers(name_of)))
         ->type_name("NAME");

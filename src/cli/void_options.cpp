@@ -17,7 +17,7 @@ void add_tolerance(CLI::App& command, double& tolerance) {
 }
 
 const CLI::Option* add_modifier_infill(CLI::App& command, double& percent) {
-  return command.add_option("--modifier-infill", percent, "Infill inside modifiers")
+  return command.add_option("--modifier-infill", percent, "Modifiers: infill inside them")
       ->check(number_between(0.0, 100, "%"))
       ->type_name("PERCENT")
       ->capture_default_str();
