@@ -224,8 +224,8 @@ FailureError too_many_refused(const Tube& tube, bool is_uncut, const Roof& roof)
                         "raise --tolerance, or give another --channel-diameter or --hole-diameter");
   return FailureError(
       fmt::format(
-          "the ceilings at a tube {} would join to one wider than --bridge {:g} mm, and so they would "
-          "at {} other places",
+          "the ceilings at a tube {} would join to one wider than --bridge {:g} mm, after {} other places "
+          "had been tried",
           place, roof.bridge(), kMostRefused),
       "give a smaller --channel-diameter and --hole-diameter, a larger --bridge, or --shape spheres");
 }
