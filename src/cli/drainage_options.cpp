@@ -1,7 +1,10 @@
 #include "cli/drainage_options.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <functional>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "cli/numbers.h"
@@ -21,6 +24,35 @@ const CLI::Option* add_drain(CLI::App& command, bool& drain) {
                   processes_that(drains), sealed, sealed.find(' ') == std::string::npos ? "does" : "do"));
 }
 
+// The side of a model that a word or three numbers name; top and bottom are those of the print.
+std::optional<Vec3d> parse_side(std::string_view text, Vec3d up) {
+  if (text == "top") return up;
+  if (text == "bottom") return -up;
+  constexpr std::pair<std::string_view, std::string_view> kSides[] = {
+      {"left", "-x"}, {"right", "+x"}, {"front", "-y"}, {"back", "+y"}};
+  for (const auto& [name, axis] : kSides)
+    if (text == name) return parse_direction(axis);
+  return parse_direction(text);
+}
+
+std::optional<double> parse_after(std::string_view text, std::string_view prefix) {
+  if (!text.starts_with(prefix)) return std::nullopt;
+  return parse_number(text.substr(prefix.size()));
+}
+
+// "box:x0,y0,z0,x1,y1,z1"
+std::optional<Box3d> parse_box(std::string_view text) {
+  constexpr std::string_view kPrefix = "box:";
+  if (!text.starts_with(kPrefix)) return std::nullopt;
+  text.remove_prefix(kPrefix.size());
+  std::size_t comma = 0;
+  for (int i = 0; i < 3 && comma != std::string_view::npos; ++i) comma = text.find(',', comma + (i > 0));
+  if (comma == std::string_view::npos) return std::nullopt;
+  const auto a = parse_point(text.substr(0, comma)), b = parse_point(text.substr(comma + 1));
+  if (!a || !b) return std::nullopt;
+  return Box3d{min_of(*a, *b), max_of(*a, *b)};
+}
+
 }  // namespace
 
 DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
@@ -32,6 +64,19 @@ DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
       ->type_name("X,Y,Z")
       ->allow_extra_args(false)  // or it would take the model
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  const auto add_sides = [&](const char* option, std::vector<std::string>& texts, const char* words) {
+    command.add_option(option, texts, words)
+        ->type_name("WHERE")
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
+  add_sides("--holes-on", on_,
+            "Escape holes come out only where the surface faces this side, within 45 degrees: bottom, top "
+            "(as printed), "
+            "left (-x), right, front (-y), back, or a direction x,y,z; may be repeated");
+  add_sides("--holes-not-on", not_on_,
+            "They do not come out there: a side as above, above:HEIGHT, below:HEIGHT (along --up, mm) or "
+            "box:x0,y0,z0,x1,y1,z1 (mm); may be repeated");
 }
 
 void DrainageOptions::require_no_tubes() const {
@@ -40,6 +85,39 @@ void DrainageOptions::require_no_tubes() const {
   };
   for (const auto& [limit, given] : limits_.given()) refuse(row_of(limit).option);
   if (!places_.empty()) refuse("--escape-hole");
+  if (!on_.empty()) refuse("--holes-on");
+  if (!not_on_.empty()) refuse("--holes-not-on");
+}
+
+HoleSides DrainageOptions::sides(Vec3d up) const {
+  HoleSides sides;
+  for (const std::string& text : on_) {
+    const auto side = parse_side(text, up);
+    if (!side)
+      throw UsageError(fmt::format("--holes-on: '{}' is no side of a model", text),
+                       "give bottom, top, left, right, front, back or a direction x,y,z");
+    sides.on.push_back(*side);
+  }
+  for (const std::string& text : not_on_) {
+    if (const auto side = parse_side(text, up))
+      sides.not_on.push_back(*side);
+    else if (const auto above = parse_after(text, "above:"))
+      sides.not_above = std::min(sides.not_above, *above);
+    else if (const auto below = parse_after(text, "below:"))
+      sides.not_below = std::max(sides.not_below, *below);
+    else if (const auto box = parse_box(text))
+      sides.not_within.push_back(*box);
+    else
+      throw UsageError(
+          fmt::format("--holes-not-on: '{}' says no place", text),
+          "give bottom, top, left, right, front, back, a direction x,y,z, above:HEIGHT, below:HEIGHT or "
+          "box:x0,y0,z0,x1,y1,z1");
+  }
+  if (places_.size() >= 2 && !sides.is_anywhere())
+    throw UsageError(
+        "two --escape-hole places are all the holes there are: --holes-on and --holes-not-on choose none",
+        "leave out one or the other");
+  return sides;
 }
 
 std::vector<Vec3d> DrainageOptions::escape_holes() const {
@@ -67,6 +145,7 @@ HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
   }
   options.packing.process = with_tubes(choice, limits_.given());
   options.drainage = drainage_request(options.packing.process, escape_holes());
+  options.drainage->sides = sides(choice.direction.up);
   return options;
 }
 

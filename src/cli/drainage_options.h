@@ -9,7 +9,7 @@
 
 namespace aerate::cli {
 
-// --drain, --no-drain, the limits of drainage, --escape-hole
+// --drain, --no-drain, the limits of drainage, --escape-hole, --holes-on, --holes-not-on
 class DrainageOptions {
  public:
   DrainageOptions(CLI::App& command, const ConfigFile& config);
@@ -26,10 +26,13 @@ class DrainageOptions {
   // Throws UsageError for what is no point, all of it in one message.
   std::vector<Vec3d> escape_holes() const;
 
+  // Throws UsageError for what is no side, and for sides beside two places.
+  HoleSides sides(Vec3d up) const;
+
   bool drain_ = false;
   const CLI::Option* drain_option_;
   LimitOptions limits_;
-  std::vector<std::string> places_;
+  std::vector<std::string> places_, on_, not_on_;
 };
 
 }  // namespace aerate::cli

@@ -51,7 +51,9 @@ NothingToRemoveError nothing_is_opened(const DrainageRequest& request, const std
       fmt::format("no place was found for two escape holes of {:g} mm, so no void can drain",
                   2 * request.hole_radius),
       request.escape_holes.empty()
-          ? "give " + narrower_holes(request) + ", larger voids, or places with --escape-hole" + other_way
+          ? (request.sides.is_anywhere() ? "" : "allow more sides with --holes-on and --holes-not-on, ") +
+                ("give " + narrower_holes(request)) + ", larger voids, or places with --escape-hole" +
+                other_way
           : "ask for other places, or leave --escape-hole out");
 }
 

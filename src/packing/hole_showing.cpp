@@ -37,6 +37,12 @@ std::vector<Vec3d> all_round(Vec3d axis) {
 
 }  // namespace
 
+bool opens_onto_plate(const Tube& hole, Vec3d up, double plate) {
+  const double rise = dot(direction_of(hole), up);
+  const double reach = hole.radius * std::sqrt(std::max(0.0, 1 - rise * rise));
+  return dot(hole.end, up) - reach < plate + kLeastAbovePlate;
+}
+
 HoleShowing::HoleShowing(const TubeClearance& clearance, Vec3d up, double plate,
                          const DrainageRequest& request)
     : clearance_(clearance),
@@ -46,14 +52,8 @@ HoleShowing::HoleShowing(const TubeClearance& clearance, Vec3d up, double plate,
       request_(request),
       views_(all_round(up)) {}
 
-bool HoleShowing::is_on_plate(const Tube& hole) const {
-  const double rise = dot(direction_of(hole), up_);
-  const double reach = hole.radius * std::sqrt(std::max(0.0, 1 - rise * rise));
-  return dot(hole.end, up_) - reach < plate_ + kLeastAbovePlate;
-}
-
 bool HoleShowing::is_allowed(const Tube& hole) const {
-  if (request_.avoids_plate && is_on_plate(hole)) return false;
+  if (request_.avoids_plate && opens_onto_plate(hole, up_, plate_)) return false;
   const HoleSides& sides = request_.sides;
   if (sides.is_anywhere()) return true;
   const Vec3d normal = clearance_.normal_near(hole.end);

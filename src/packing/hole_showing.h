@@ -9,6 +9,9 @@
 
 namespace aerate {
 
+// Does a hole open onto a build plate at this height along `up`?
+bool opens_onto_plate(const Tube& hole, Vec3d up, double plate);
+
 // Where on the outside of a model an escape hole may come out, and how much it would be seen there.
 class HoleShowing {
  public:
@@ -23,9 +26,6 @@ class HoleShowing {
   // keep off (ambient exposure, by rays). Views from below count a third, and all of them a little less from the back
   // (+y where up is +z), so that of two like places the one at the back is taken.
   double of(const Tube& hole) const;
-
-  // Does the hole open onto the build plate?
-  bool is_on_plate(const Tube& hole) const;
 
  private:
   const TubeClearance& clearance_;

@@ -23,6 +23,7 @@
 #include "mesh/outward_shells.h"
 #include "packing/cells/cell_drainage.h"
 #include "packing/drainage_refusals.h"
+#include "packing/hole_showing.h"
 #include "printing/carve_drained.h"
 #include "printing/cells/carve_drained_cells.h"
 #include "printing/cut_holes.h"
@@ -62,7 +63,8 @@ std::string what_would_reach_them(const UndrainedVoids& dropped, const DrainageR
                      2 * request.channel_radius, 2 * request.hole_radius);
 }
 
-void tell_what_was_dropped(const DrainedVoids& drainage, std::size_t packed, Monitor& monitor) {
+// `plate`: the height of the model's lowest point.
+void tell_of(const DrainedVoids& drainage, std::size_t packed, double plate, Monitor& monitor) {
   const UndrainedVoids& dropped = drainage.dropped;
   if (dropped.count() > 0)
     monitor.notice(fmt::format("{} of {} ({:.1f} mm3) cannot be drained and {} not made: {}{}",
@@ -76,6 +78,15 @@ void tell_what_was_dropped(const DrainedVoids& drainage, std::size_t packed, Mon
                     narrow, drainage.plan.holes.size(), narrow == 1 ? "is" : "are",
                     2 * drainage.request.narrow_hole_radius, 2 * drainage.request.hole_radius,
                     2 * drainage.request.hole_radius));
+  const auto sealed = std::ranges::count_if(drainage.plan.holes, [&](const EscapeHole& hole) {
+    return opens_onto_plate(hole.tube, drainage.plan.roof.up, plate);
+  });
+  if (sealed > 0)
+    monitor.notice(fmt::format(
+        "{} of {} escape holes {} onto the build plate, which closes {} while the model is printed standing "
+        "on it: print "
+        "it on supports",
+        sealed, drainage.plan.holes.size(), sealed == 1 ? "opens" : "open", sealed == 1 ? "it" : "them"));
   const TrappedPools& pools = drainage.plan.pools;
   if (pools.after_both > kPoolsAimedAt * pools.total)
     monitor.notice(fmt::format(
@@ -271,7 +282,7 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
   };
   DrainedPacking drained = rather_off_plate(
       *options.drainage, drained_under, [](const DrainedPacking& made) { return std::cref(*made.voids); });
-  tell_what_was_dropped(*drained.voids, packing.spheres.size(), monitor);
+  tell_of(*drained.voids, packing.spheres.size(), drainable.plate, monitor);
   return drained;
 }
 
@@ -312,7 +323,7 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   };
   DrainedCells drained = rather_off_plate(*options.drainage, drained_under,
                                           [](const DrainedCells& made) { return std::cref(made.voids); });
-  tell_what_was_dropped(drained.voids, cells.voids.size(), monitor);
+  tell_of(drained.voids, cells.voids.size(), drainable.plate, monitor);
   return drained;
 }
 

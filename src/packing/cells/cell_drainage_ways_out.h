@@ -26,8 +26,8 @@ struct CellWayOut {
   // Where the tube's side leaves the void: first and last along the axis from its start, mm; lowest and
   // highest along print orientation's up.
   double first = 0, last = 0, lowest = 0, highest = 0;
-  double reached = 0;             // where along the axis that meets the surface
-  std::optional<double> showing;  // to 1; once it was looked at
+  double reached = 0;                            // where along the axis that meets the surface
+  std::optional<double> showing = std::nullopt;  // to 1; once it was looked at
 
   double length() const { return reached - first; }
 };
