@@ -89,6 +89,16 @@ std::optional<std::string> other_kind(const pugi::xml_node& volume) {
   return type.empty() || type == "ModelPart" ? std::nullopt : std::optional(type);
 }
 
+bool is_modifier(const pugi::xml_node& volume) {
+  return metadata_of(volume, "volume_type") == "ParameterModifier" ||
+         (metadata_of(volume, "volume_type").empty() && metadata_of(volume, "modifier") == "1");
+}
+
+VolumeTriangles triangles_of(const pugi::xml_node& volume) {
+  return {std::nullopt, static_cast<std::size_t>(volume.attribute("firstid").as_ullong()),
+          static_cast<std::size_t>(volume.attribute("lastid").as_ullong())};
+}
+
 // Settings of an object or a volume; what else stands there is said of every project.
 std::optional<std::string> setting_in_metadata(const pugi::xml_node& metadata) {
   const std::string key = metadata.attribute("key").as_string(),
@@ -170,7 +180,8 @@ SlicerProfile prusa_slicer() {
   row.repeats_gcode = true;
   row.project = project_facts;
   row.labelled_object = labelled_object;
-  row.modifiers = {"prusa", {kPartList, "volume", other_kind}, extras_for, named, read_parts};
+  row.modifiers = {
+      "prusa", {kPartList, "volume", other_kind, is_modifier, triangles_of}, extras_for, named, read_parts};
   return row;
 }
 

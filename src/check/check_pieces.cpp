@@ -4,6 +4,7 @@
 
 #include "check/check_cells.h"
 #include "check/check_failure.h"
+#include "check/check_kept.h"
 #include "check/same_triangles.h"
 
 namespace aerate {
@@ -22,6 +23,7 @@ PieceFacts check_pieces(const Mesh& read_back, const Expected& expected, Monitor
   facts.volume = measured.inside.volume;
   facts.deviation = measured.deviation;
   facts.clearances = measured.clearances;
+  if (expected.kept != nullptr) facts.kept_wall = check_kept(read_back, expected, monitor);
   facts.roof_count = static_cast<std::size_t>(std::ranges::count_if(planned, &CellVoid::has_roof));
   facts.ceilings =
       limited_ceilings(read_back, pieces, expected.packing.limits.roof, expected.tolerance, monitor);

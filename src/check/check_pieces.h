@@ -20,6 +20,7 @@ struct PieceFacts {
   Clearances clearances;  // see MeasuredCells
   std::size_t roof_count = 0;
   std::optional<Ceilings> ceilings;  // absent where they are not limited
+  std::optional<double> kept_wall;   // see OutputFacts
 };
 
 // Checks pieces of cells without the model that they are voids of: `expected.solid` holds them alone, and the mesh

@@ -12,6 +12,7 @@
 #include "check/check_cells.h"
 #include "check/check_drained.h"
 #include "check/check_failure.h"
+#include "check/check_kept.h"
 #include "check/check_sealed.h"
 #include "check/check_tubes.h"
 #include "check/check_voids.h"
@@ -237,6 +238,7 @@ OutputFacts check_written(const Mesh& read_back, const Expected& expected, Monit
                       .channel_wall = check_tubes(read_back, expected)};
     facts.drainage->sealed_cavities = check_drained(read_back, expected, monitor);
   }
+  if (expected.kept != nullptr) facts.kept_wall = check_kept(read_back, expected, monitor);
   monitor.check_interrupted();
 
   facts.triangle_count = read_back.triangles.size();

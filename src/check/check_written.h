@@ -17,6 +17,7 @@ namespace aerate {
 //   - it hangs together as it should: sealed voids as shells of their own (check_sealed.h), drained ones all
 //     joined to the outside (check_drained.h);
 //   - the balls round the voids, with their roofs, keep the wall and the gap;
+//   - nothing is nearer than the wall to regions that stay solid, nor in them (check_kept.h);
 //   - where ceilings are limited, none is wider than the bridge by more than the tolerance;
 //   - the volumes add up.
 // On all threads; the facts are the same for any number of them. Throws FailureError that says which of these

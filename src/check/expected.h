@@ -3,6 +3,7 @@
 #include "check/output_facts.h"
 #include "core/cells.h"
 #include "core/drainage.h"
+#include "core/kept_solid.h"
 #include "core/mesh.h"
 #include "core/packing.h"
 #include "core/solid.h"
@@ -23,6 +24,7 @@ struct Expected {
   const DrainagePlan* drainage;  // their channels and holes; null: each void is sealed
   double tolerance = 0;          // mm
   OuterSurface outer = OuterSurface::kept;
+  const KeptSolid* kept = nullptr;  // regions that stay solid; null: there are none
 };
 
 }  // namespace aerate

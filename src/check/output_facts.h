@@ -47,6 +47,9 @@ struct OutputFacts {
   // Absent where each void is sealed.
   std::optional<MeasuredDrainage> drainage;
 
+  // Between regions that stay solid and all that was taken out; absent where there are none.
+  std::optional<double> kept_wall;
+
   // Absent where parts of the model overlap: the surface integral would count the overlap twice.
   std::optional<Vec3d> centre_of_mass_before;
   std::optional<Vec3d> centre_of_mass_after;

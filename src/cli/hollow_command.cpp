@@ -11,6 +11,7 @@
 #include "cli/cell_options.h"
 #include "cli/commands.h"
 #include "cli/drainage_options.h"
+#include "cli/keep_solid_options.h"
 #include "cli/model_options.h"
 #include "cli/numbers.h"
 #include "cli/print_options.h"
@@ -76,6 +77,7 @@ struct HollowCommand {
   HollowCommand(CLI::App& command, const ConfigFile& config)
       : model(command),
         packing(command, config),
+        keep_solid(command),
         drainage(command, config),
         cells(command, words_of_cells()),
         print(command),
@@ -150,6 +152,7 @@ struct HollowCommand {
     options.load = model.load();
     options.weld = model.weld;
     options.packing = packing.request();
+    options.keep_solid = keep_solid.regions();
     options.packing.spheres = spheres;
     options.surface =
         std::map<std::string, SurfaceMode>{
@@ -220,12 +223,14 @@ struct HollowCommand {
   void run() const {
     const std::vector<HollowOptions> options = forms();
     JobFiles files{packing.inputs(model.path), {output}};
+    for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
     files.inputs.push_back({"list of spheres", spheres});
     run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
   }
 
   ModelOptions model;
   PackingCommandOptions packing;
+  KeepSolidOptions keep_solid;
   DrainageOptions drainage;
   CellCommandOptions cells;
   PrintOptions print;

@@ -7,6 +7,7 @@
 
 #include "cli/cell_options.h"
 #include "cli/commands.h"
+#include "cli/keep_solid_options.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
 #include "cli/void_options.h"
@@ -43,7 +44,11 @@ void require_table(const std::filesystem::path& output) {
 
 struct PackCommand {
   PackCommand(CLI::App& command, const ConfigFile& config)
-      : model(command), packing(command, config), cells(command, words_of_cells()), run_options(command) {
+      : model(command),
+        packing(command, config),
+        keep_solid(command),
+        cells(command, words_of_cells()),
+        run_options(command) {
     command
         .add_option("-o,--output", output,
                     "Spheres: a table, .csv (a line x,y,z,radius,kind each), .json or .ply. Cells: their "
@@ -59,6 +64,7 @@ struct PackCommand {
     options.output = output;
     options.load = model.load();
     options.weld = model.weld;
+    options.keep_solid = keep_solid.regions();
     ShapedRequest shaped =
         cells.applied_to(packing.request(), cells.asks_for_cells().value_or(false), CellOptions{}.fillet);
     options.packing = std::move(shaped.packing);
@@ -81,11 +87,13 @@ struct PackCommand {
   void run() const {
     const PackOptions options = to_pipeline();
     JobFiles files{packing.inputs(model.path), {options.output}};
+    for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
     run_reported(run_options, files, [&](Monitor& monitor) { return pack(options, monitor); });
   }
 
   ModelOptions model;
   PackingCommandOptions packing;
+  KeepSolidOptions keep_solid;
   CellCommandOptions cells;
   RunOptions run_options;
   std::string output;

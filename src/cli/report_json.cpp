@@ -99,6 +99,11 @@ Json json_of(const std::optional<Ceilings>& ceilings, std::size_t roof_count, co
           {"widest_mm", ceilings->widest}};
 }
 
+Json json_of(const std::optional<KeptFacts>& kept) {
+  if (!kept) return nullptr;
+  return {{"regions", kept->count}, {"volume_mm3", kept->volume}, {"wall_mm", or_null(kept->wall)}};
+}
+
 Json json_of(const PackedCells& cells, const PackReport& report) {
   Json json{{"count", report.packing.spheres.size()}, {"planes", cells.plane_count}, {"pieces", nullptr}};
   if (!cells.pieces) return json;
@@ -260,6 +265,7 @@ std::string to_json(const HollowReport& report) {
                    {"tolerance_used_mm", report.tolerance_used},
                    {"deviation_mm", output.void_deviation}};
   json["measured"] = json_of(output.clearances);
+  json["keep_solid"] = json_of(report.kept);
   json["ceilings"] = json_of(output.ceilings, output.roof_count, report.limits);
   json["drainage"] = report.drainage ? json_of(*report.drainage, *output.drainage) : Json(nullptr);
   json["volume"] = volume_of(report);
@@ -283,6 +289,7 @@ std::string to_json(const PackReport& report) {
   json["packing"] = json_of(report.method, report.packing.device, report.density, report.packing.statistics);
   json["packing"]["spheres"] = report.packing.spheres.size();
   json["measured"] = report.clearances ? json_of(*report.clearances) : Json(nullptr);
+  json["keep_solid"] = json_of(report.kept);
   json["cells"] = report.cells ? json_of(*report.cells, report) : Json(nullptr);
   json["output"] = {{"path", report.output.string()}, {"bytes", report.output_bytes}};
   add_closing(json, report.stages, report.notices);

@@ -107,6 +107,16 @@ void add_clearances(Lines& lines, const Clearances& clearances, const PackingLim
             limits.wall, gap, limits.gap);
 }
 
+void add_kept(Lines& lines, const std::optional<KeptFacts>& kept, const PackingLimits& limits) {
+  if (!kept) return;
+  // Regions that hold all of the model's surface have none in it.
+  const bool is_measured = kept->wall && std::isfinite(*kept->wall);
+  lines.add(
+      "kept solid", "{}, about {:.1f} mm3 of the model{}", count_of(kept->count, "region", "regions"),
+      kept->volume,
+      is_measured ? fmt::format("; wall {:.3f} mm at least (limit {:g})", *kept->wall, limits.wall) : "");
+}
+
 std::string margin_in_words(double margin) {
   return fmt::format("{:.1f} mm {} the edge of its base", std::abs(margin),
                      margin >= 0 ? "inside" : "outside");
@@ -250,6 +260,7 @@ void add_pieces(Lines& lines, const PackReport& report) {
   lines.add("pieces", "{}, {:.1f} mm3 ({:.2f} % of the model), fillet {:g} mm", count, pieces.volume,
             100 * pieces.volume / report.input.inspection.filled_volume, cells.options.fillet);
   add_clearances(lines, pieces.clearances, report.limits);
+  add_kept(lines, report.kept, report.limits);
   add_ceilings(lines, pieces.ceilings, fmt::format("{} of {}", grouped(pieces.roof_count), count),
                report.limits.roof, cells.tolerance, report.process);
   lines.add("tolerance", "{:.3g} mm; surfaces of pieces are at most {:.3g} mm inside their cells",
@@ -291,6 +302,7 @@ std::string to_text(const HollowReport& report) {
               report.packing_device);
   add_volume(lines, report);
   add_clearances(lines, output.clearances, report.limits);
+  add_kept(lines, report.kept, report.limits);
   add_ceilings(
       lines, output.ceilings,
       fmt::format("{} of {}", grouped(output.roof_count), count_of(output.void_count, "void", "voids")),
@@ -327,6 +339,7 @@ std::string to_text(const PackReport& report) {
   // Of pieces, which are what is written then, below.
   const bool has_pieces = report.cells && report.cells->pieces;
   if (report.clearances && !has_pieces) add_clearances(lines, *report.clearances, report.packing.limits);
+  if (!has_pieces) add_kept(lines, report.kept, report.packing.limits);
   const PackingStatistics& statistics = report.packing.statistics;
   lines.add("places",
             "{} tried; {} outside, {} near the surface, {} below the smallest radius, {} where parts "

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,6 +22,12 @@ enum class LengthUnit { millimetre, centimetre, metre, inch };
 
 double millimetres_per(LengthUnit unit);
 
+// The triangles of a volume in its object: either those of a component, or a range of its own mesh.
+struct VolumeTriangles {
+  std::optional<std::uint32_t> component;  // id of the object that it stands for
+  std::size_t first = 0, last = 0;
+};
+
 // A file of a 3MF package in which a slicer says what the volumes are: <config>, in it <object>s, in them a
 // node for each volume, with its name as <metadata key="name" value=""/>.
 struct VolumeList {
@@ -29,21 +36,32 @@ struct VolumeList {
   // What a volume is that is not part of the model, though in the package it looks like a body of it (a
   // modifier, a negative volume, supports painted as volumes); nothing for a part.
   std::optional<std::string> (*other_kind)(const pugi::xml_node& volume);
+  bool (*is_modifier)(const pugi::xml_node& volume);
+  VolumeTriangles (*triangles)(const pugi::xml_node& volume);
 };
 
 struct LoadOptions {
   // For formats that carry no unit; 3MF and glTF files have their own and refuse another.
   std::optional<LengthUnit> unit;
   double scale = 1.0;  // on top of the unit; finite and positive
-  // A package that has one of these with a volume that is not part of the model is refused.
+  // A package that has one of these with a volume that is not part of the model is refused, unless that is a modifier
+  // of one of these names: such are read apart.
   std::vector<VolumeList> volume_lists = {};
+  std::vector<std::string> wanted_modifiers = {};
+};
+
+// All modifiers of one name, where they are shown.
+struct NamedModifier {
+  std::string name;
+  Mesh mesh;  // as that of the model
 };
 
 struct LoadedModel {
   Mesh mesh;  // all parts of the file, vertices welded where their coordinates are equal, in millimetres
-  std::string format;                     // "STL", "3MF", ...
-  std::size_t part_count = 1;             // objects in the file that were joined
-  std::vector<std::string> notices = {};  // what was left out or mended, in words for the user
+  std::string format;                         // "STL", "3MF", ...
+  std::size_t part_count = 1;                 // objects in the file that were joined
+  std::vector<std::string> notices = {};      // what was left out or mended, in words for the user
+  std::vector<NamedModifier> modifiers = {};  // that were asked for and are there
 };
 
 // Reads a model of any of the formats in formats.h; the file name's ending (any case) says which. Triangle

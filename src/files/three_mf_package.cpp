@@ -172,7 +172,8 @@ std::string ThreeMfPackage::model() const {
   fail_to_read(file_, "{} models in the 3MF package, and nothing says which of them it is", models.size());
 }
 
-void ThreeMfPackage::require_model_parts_only(const std::vector<VolumeList>& lists) const {
+std::vector<OtherVolume> ThreeMfPackage::other_volumes(const std::vector<VolumeList>& lists) const {
+  std::vector<OtherVolume> others;
   for (const VolumeList& list : lists) {
     if (!has(list.entry)) continue;
     const pugi::xml_document document = parsed(text_of(list.entry));
@@ -180,16 +181,13 @@ void ThreeMfPackage::require_model_parts_only(const std::vector<VolumeList>& lis
       for (const pugi::xml_node volume : object.children(list.node)) {
         const auto kind = list.other_kind(volume);
         if (!kind) continue;
-        throw InputError(
-            fmt::format(
-                "{}: a slicer's project with a volume that is not part of the model ({} '{}')", file_.name,
-                *kind,
-                volume.find_child_by_attribute("metadata", "key", "name").attribute("value").as_string()),
-            "take such volumes out, or export the model alone (in PrusaSlicer: File, Export, Export Plate as "
-            "STL)");
+        others.push_back(
+            {*kind, volume.find_child_by_attribute("metadata", "key", "name").attribute("value").as_string(),
+             list.is_modifier(volume), object.attribute("id").as_uint(), list.triangles(volume)});
       }
     }
   }
+  return others;
 }
 
 }  // namespace aerate

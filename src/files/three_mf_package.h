@@ -17,6 +17,14 @@ struct zip;
 
 namespace aerate {
 
+// A volume that a slicer's project says not to be part of the model.
+struct OtherVolume {
+  std::string kind, name;
+  bool is_modifier = false;
+  std::uint32_t object = 0;  // that it belongs to
+  VolumeTriangles triangles;
+};
+
 // The zip archive of a 3MF file, in which parts are found by their names in any case and with either slash.
 // What an archive may unpack to is limited (docs/meshes.md): a few bytes can stand for gigabytes.
 class ThreeMfPackage {
@@ -34,8 +42,8 @@ class ThreeMfPackage {
   // its damage is the reason.
   void read(std::string_view part, const std::function<void(std::string_view)>& f) const;
 
-  // Throws InputError if one of these lists has a volume that is not part of the model.
-  void require_model_parts_only(const std::vector<VolumeList>& lists) const;
+  // The volumes that are not part of the model, of all lists.
+  std::vector<OtherVolume> other_volumes(const std::vector<VolumeList>& lists) const;
 
  private:
   struct Discard {

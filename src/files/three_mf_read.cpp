@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fmt/ranges.h>
 #include <map>
 #include <set>
 #include <utility>
@@ -36,11 +37,8 @@ class Reader3mf {
  public:
   explicit Reader3mf(const InputFile& file) : file_(file), package_(file), model_(package_.model()) {}
 
-  void require_model_parts_only(const std::vector<VolumeList>& lists) const {
-    package_.require_model_parts_only(lists);
-  }
-
   LoadedModel build(const LoadOptions& options) {
+    take_modifiers(options);
     const ModelPart& model = part({});
     const double factor = millimetres_per_unit(options, model.unit, file_.name);
     require_something_to_print(model);
@@ -48,9 +46,14 @@ class Reader3mf {
     LoadedModel loaded{.mesh = {}, .format = {}, .part_count = 0, .notices = {}};
     Welder welder(0);
     for (const ObjectReference& item : model.items)
-      add_object(find({}, item), item.transform, factor, welder, loaded);
+      add_item(find({}, item), item.transform, factor, welder, loaded);
     loaded.mesh = std::move(welder).finish();
     if (loaded.mesh.triangles.empty()) fail_without_triangles();
+    for (auto& [name, own] : modifier_welders_) {
+      loaded.modifiers.push_back({name, std::move(own).finish()});
+      if (loaded.modifiers.back().mesh.triangles.empty())
+        fail_to_read(file_, "modifier '{}' has no triangles", name);
+    }
     loaded.notices = notices(model);
     return loaded;
   }
@@ -127,6 +130,63 @@ class Reader3mf {
     return extents_[found.object] = all;
   }
 
+  // Of the volumes that are not part of the model only modifiers that were asked for may be there.
+  void take_modifiers(const LoadOptions& options) {
+    std::vector<std::string> unwanted;
+    for (OtherVolume& volume : package_.other_volumes(options.volume_lists)) {
+      const bool is_wanted = volume.is_modifier && std::ranges::find(options.wanted_modifiers, volume.name) !=
+                                                       options.wanted_modifiers.end();
+      if (!is_wanted) {
+        unwanted.push_back(fmt::format("{} '{}'", volume.kind, volume.name));
+        continue;
+      }
+      modifier_welders_.try_emplace(volume.name, 0);
+      modifiers_.push_back(std::move(volume));
+    }
+    if (unwanted.empty()) return;
+    throw InputError(
+        fmt::format("{}: a slicer's project with {} not part of the model ({})", file_.name,
+                    unwanted.size() == 1 ? "a volume that is" : "volumes that are",
+                    fmt::join(unwanted, ", ")),
+        "take such volumes out, or export the model alone (in PrusaSlicer: File, Export, Export Plate as "
+        "STL); "
+        "modifiers that 'aerate hollow' is to keep solid may stay, with --keep-solid NAME for each");
+  }
+
+  // The modifier that a triangle of an object, or one of its components, belongs to.
+  template <typename Belongs>
+  Welder* modifier_at(std::uint32_t object, const Belongs& belongs) {
+    for (const OtherVolume& volume : modifiers_)
+      if (volume.object == object && belongs(volume.triangles))
+        return &modifier_welders_.find(volume.name)->second;
+    return nullptr;
+  }
+
+  // What the build shows: only of such objects do projects list volumes.
+  void add_item(const Found& found, const Affine& transform, double factor, Welder& welder,
+                LoadedModel& loaded) {
+    const ModelObject& object = *found.object;
+    if (modifiers_.empty() || !is_model(object)) return add_object(found, transform, factor, welder, loaded);
+    for (const ObjectReference& component : object.components) {
+      Welder* const modifier =
+          modifier_at(object.id, [&](const VolumeTriangles& t) { return t.component == component.id; });
+      const std::size_t parts = loaded.part_count;
+      add_object(find(*found.path, component), transform * component.transform, factor,
+                 modifier != nullptr ? *modifier : welder, loaded);
+      if (modifier != nullptr) loaded.part_count = parts;
+    }
+    if (!object.components.empty()) return;
+    ++loaded.part_count;
+    const std::vector<Vec3f>& p = object.mesh.positions;
+    for (std::size_t i = 0; i < object.mesh.triangles.size(); ++i) {
+      Welder* const modifier = modifier_at(
+          object.id, [&](const VolumeTriangles& t) { return !t.component && i >= t.first && i <= t.last; });
+      const auto& [a, b, c] = object.mesh.triangles[i];
+      PartWriter(modifier != nullptr ? *modifier : welder, transform, factor, file_.name)
+          .add_triangle(p[a], p[b], p[c]);
+    }
+  }
+
   void add_object(const Found& found, const Affine& transform, double factor, Welder& welder,
                   LoadedModel& loaded) {
     const ModelObject& object = *found.object;
@@ -183,12 +243,12 @@ class Reader3mf {
   std::set<const ModelObject*> open_;  // whose components are being looked at
   std::set<std::pair<std::string, std::uint32_t>> left_out_;
   std::set<std::uint32_t> empty_;
+  std::vector<OtherVolume> modifiers_;              // that were asked for
+  std::map<std::string, Welder> modifier_welders_;  // by their names
 };
 
 LoadedModel read_3mf(InputFile& file, const LoadOptions& options) {
-  Reader3mf reader(file);
-  reader.require_model_parts_only(options.volume_lists);
-  return reader.build(options);
+  return Reader3mf(file).build(options);
 }
 
 void write_3mf(const Mesh& mesh, OutputFile& file) {

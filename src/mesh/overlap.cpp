@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <tbb/parallel_for.h>
 
 #include "kernels/constants.h"
 #include "kernels/winding.h"
+#include "mesh/line_crossings.h"
 #include "mesh/r2_sequence.h"
 
 namespace aerate {
@@ -20,24 +20,6 @@ constexpr std::size_t kLinesPerBlock = 256;
 // Overlap along a line that is shorter than this share of the model's diagonal is what rounding makes of
 // surfaces that touch.
 constexpr double kRoundingShare = 1e-6;
-
-struct Crossing {
-  double z;
-  int sign;  // +1 on leaving the solid upwards
-  std::uint32_t facet;
-};
-
-double height_at(const kernels::Facet& facet, double x, double y) {
-  const Vec3d a = to_double(facet.a);
-  const Vec3d b = to_double(facet.b);
-  const Vec3d c = to_double(facet.c);
-  const Vec3d normal = cross(b - a, c - a);
-  const double z = a.z - (normal.x * (x - a.x) + normal.y * (y - a.y)) / normal.z;
-  // A facet nearly parallel to the line has no accurate height, but it has bounds.
-  const double lowest = std::min({a.z, b.z, c.z});
-  const double highest = std::max({a.z, b.z, c.z});
-  return std::isnan(z) ? lowest : std::clamp(z, lowest, highest);
-}
 
 struct LineSums {
   double overlapped = 0;
@@ -52,11 +34,8 @@ class LineMeasure {
 
   void add_line(double x, double y, LineSums& sums) {
     crossings_.clear();
-    winding_.for_each_near(x, y, [&](std::uint32_t facet) {
-      const int sign = kernels::winding_detail::line_crossing(winding_.facets[facet], x, y);
-      if (sign != 0) crossings_.push_back({height_at(winding_.facets[facet], x, y), sign, facet});
-    });
-    std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
+    for_each_crossing(winding_, x, y, [&](const LineCrossing& crossing) { crossings_.push_back(crossing); });
+    std::sort(crossings_.begin(), crossings_.end(), [](const LineCrossing& a, const LineCrossing& b) {
       return a.z != b.z ? a.z < b.z : a.facet < b.facet;
     });
     int winding = 0;
@@ -83,7 +62,7 @@ class LineMeasure {
   const ShellLabels& labels_;
   double least_length_;
   std::vector<std::uint8_t>& overlapping_;
-  std::vector<Crossing> crossings_;
+  std::vector<LineCrossing> crossings_;
 };
 
 }  // namespace

@@ -55,7 +55,7 @@ DrainageTask::DrainageTask(const DrainableModel& model, const Packing& packing, 
       no_tubes(limits.roof, limits.gap, std::max(longest_channel, longest_hole(request, limits)),
                std::max(request.channel_radius, request.hole_radius)),
       clearance(model.surface, packing, std::max(longest_channel, longest_hole(request, limits)),
-                std::max(request.channel_radius, request.hole_radius)),
+                std::max(request.channel_radius, request.hole_radius), model.kept),
       ways(voids, limits.roof, request.channel_radius, longest_channel, clearance, monitor),
       places(model, voids, limits, request, clearance) {
   for (const VoidShape& shape : voids)

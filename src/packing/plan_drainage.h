@@ -45,6 +45,8 @@ using CanOpen = std::function<bool(const EscapeHole& hole)>;
 struct DrainableModel {
   const SurfaceIndex& surface;
   const kernels::WindingView& outward;  // of those of its triangles that bound it outside; 0 outside of all
+  // Of regions within the model that tubes keep the wall from all the way; null: there are none.
+  const SurfaceIndex* kept = nullptr;
   double plate = -std::numeric_limits<double>::infinity();  // height of its lowest point as printed, mm
 };
 

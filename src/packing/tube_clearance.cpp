@@ -73,8 +73,9 @@ struct RayMetric {
 }  // namespace
 
 TubeClearance::TubeClearance(const SurfaceIndex& surface, const Packing& packing, double longest,
-                             double widest_radius)
+                             double widest_radius, const SurfaceIndex* kept)
     : bvh_(surface.bvh()),
+      kept_(kept),
       voids_(shapes_of(packing.spheres, packing.limits.roof)),
       limits_(packing.limits),
       longest_(longest) {
@@ -125,11 +126,17 @@ Vec3d TubeClearance::normal_near(Vec3d point) const {
 }
 
 bool TubeClearance::keeps_wall(const Tube& tube) const {
-  return keeps_away(tube, tube.radius + limits_.wall, kInfinity);
+  return keeps_off_kept(tube) && keeps_away(tube, tube.radius + limits_.wall, kInfinity);
 }
 
 bool TubeClearance::keeps_wall_on_way_out(const Tube& tube, double slope) const {
-  return keeps_away(tube, tube.radius + limits_.wall, slope);
+  const Tube cut{tube.start, tube.end + direction_of(tube) * (kCutBeyond * tube.radius), tube.radius};
+  return keeps_off_kept(cut) && keeps_away(tube, tube.radius + limits_.wall, slope);
+}
+
+bool TubeClearance::keeps_off_kept(const Tube& tube) const {
+  return kept_ == nullptr ||
+         kept_->triangles_near({tube.start, tube.end}, tube.radius + limits_.wall).empty();
 }
 
 bool TubeClearance::keeps_away(const Tube& tube, double most, double slope) const {

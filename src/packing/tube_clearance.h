@@ -16,10 +16,11 @@ namespace aerate {
 // that it does not join. For other tubes see PlacedTubes.
 class TubeClearance {
  public:
-  // No tube is longer than `longest`, mm. The surface must outlive this.
-  TubeClearance(const SurfaceIndex& surface, const Packing& packing, double longest, double widest_radius);
-  TubeClearance(SurfaceIndex&& surface, const Packing& packing, double longest,
-                double widest_radius) = delete;
+  // No tube is longer than `longest`, mm. The surfaces must outlive this. `kept`: see DrainableModel.
+  TubeClearance(const SurfaceIndex& surface, const Packing& packing, double longest, double widest_radius,
+                const SurfaceIndex* kept = nullptr);
+  TubeClearance(SurfaceIndex&& surface, const Packing& packing, double longest, double widest_radius,
+                const SurfaceIndex* kept = nullptr) = delete;
 
   // Distance from a point to the model's surface; `limit` if it is farther.
   double to_surface(Vec3d point, double limit) const;
@@ -32,15 +33,19 @@ class TubeClearance {
   Vec3d nearest_on_surface(Vec3d point) const;
   Vec3d normal_near(Vec3d point) const;
 
-  // Is no point of the axis nearer to the surface than radius + wall? Exact but for `kWallSlack`, by which
+  // Is no point of the axis nearer to the surface, nor to kept regions, than radius + wall? Exact but for `kWallSlack`, by which
   // tubes may be refused that would just do: distance changes by no more than the point moves, so a piece of
   // the axis is clear if its middle is clear by half its length.
   bool keeps_wall(const Tube& tube) const;
 
   // The same for a tube that comes out of the surface at its end. There the axis comes nearer, but no point
   // of it than `slope` (the least sine of its angle with the surface) times what is left of the way. Exact
-  // but for `kWallSlack` as before, and for the last of the way that is shorter than that.
+  // but for `kWallSlack` as before, and for the last of the way that is shorter than that. From kept regions it
+  // keeps the wall to where its cut ends.
   bool keeps_wall_on_way_out(const Tube& tube, double slope) const;
+
+  // Is no point of the axis nearer to kept regions than radius + wall? Exact.
+  bool keeps_off_kept(const Tube& tube) const;
 
   // Do voids other than those two keep the gap from the tube, which starts at void `from`?
   bool keeps_gap_to_voids(const Tube& tube, std::uint32_t from, std::uint32_t to) const;
@@ -59,6 +64,7 @@ class TubeClearance {
   bool keeps_away(const Tube& tube, double most, double slope) const;
 
   kernels::TriangleBvhView bvh_;
+  const SurfaceIndex* kept_;
   std::vector<VoidShape> voids_;
   PackingLimits limits_;
   double roofs_ = 0;  // how far a void reaches beyond its ball at most

@@ -32,6 +32,10 @@
 namespace aerate {
 namespace {
 
+const SurfaceIndex* kept_in(const PreparedModel& model) {
+  return model.kept ? &model.kept->within : nullptr;
+}
+
 // By this factor the tolerance is loosened, so many times at most.
 constexpr double kLooser = 1.25;
 constexpr int kMostTries = 12;
@@ -257,7 +261,7 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
   warn_of_wide_tubes(process, roof, *options.drainage, monitor);
   require_resolvable_tubes(model.mesh, *options.drainage, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
-  const DrainableModel drainable{surface, outward.winding(), lowest_along(model.mesh, roof.up)};
+  const DrainableModel drainable{surface, outward.winding(), kept_in(model), lowest_along(model.mesh, roof.up)};
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
     const WayOut way{hole.tube, packing.spheres[hole.from]};
@@ -292,7 +296,7 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   monitor.stage("drain");
   require_resolvable_tubes(model.mesh, *options.drainage, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
-  const DrainableModel drainable{surface, outward.winding(), lowest_along(model.mesh, limits.roof.up)};
+  const DrainableModel drainable{surface, outward.winding(), kept_in(model), lowest_along(model.mesh, limits.roof.up)};
   std::vector<Tube> refused;
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
     return !is_among(refused, tube) &&

@@ -37,7 +37,8 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
                                    .cells = hollowed.cells ? &*hollowed.cells : nullptr,
                                    .drainage = hollowed.drainage ? &hollowed.drainage->plan : nullptr,
                                    .tolerance = hollowed.carved.tolerance,
-                                   .outer = surface_of(hollowed.model)},
+                                   .outer = surface_of(hollowed.model),
+                                   .kept = hollowed.model.kept ? &*hollowed.model.kept : nullptr},
                                   monitor);
     written.bytes = std::filesystem::file_size(pending.file().path());
     if (options.modifiers) return;
@@ -77,6 +78,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.drainage = hollowed.drainage;
   report.volume_estimated = model.inspection.parts_overlap();
   report.balance = written.balance;
+  if (model.kept) report.kept = {model.kept->count, model.kept->volume, written.facts.kept_wall};
   report.print = print;
   report.material = options.material;
   return report;

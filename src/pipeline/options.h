@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/device.h"
 #include "core/drainage.h"
@@ -11,6 +12,7 @@
 #include "files/load.h"
 #include "packing/methods.h"
 #include "pipeline/process_choice.h"
+#include "pipeline/region_request.h"
 #include "printing/materials.h"
 #include "printing/print_settings.h"
 
@@ -72,6 +74,7 @@ struct PackOptions {
   LoadOptions load;
   std::optional<double> weld;  // see HollowOptions
   PackingRequest packing;
+  std::vector<RegionRequest> keep_solid;  // see HollowOptions
   std::optional<CellOptions> cells;
   double tolerance = kCellTolerance;  // of pieces, mm; see HollowOptions
 };
@@ -98,6 +101,8 @@ struct HollowOptions {
   LoadOptions load;
   PackingRequest packing;
   std::optional<CellOptions> cells;
+  // Regions that nothing is taken out of, nor anything nearer to them than the wall.
+  std::vector<RegionRequest> keep_solid;
   SurfaceMode surface = SurfaceMode::automatic;
   // If given, voids become modifiers; the output has to be 3MF.
   std::optional<ModifierOptions> modifiers;

@@ -15,6 +15,7 @@
 #include "pipeline/announced_file.h"
 #include "pipeline/budget.h"
 #include "pipeline/job_log.h"
+#include "pipeline/keep_solid.h"
 #include "pipeline/pack_cells.h"
 #include "pipeline/print_prediction.h"
 
@@ -31,8 +32,9 @@ Packing given_packing(const PackingRequest& request) {
 }
 
 // Spheres of a file have to be a packing of this model under these limits.
-void require_no_fault(const SurfaceIndex& surface, const Packing& packing, const PackingRequest& request) {
-  const auto fault = find_fault(surface, packing);
+void require_no_fault(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                      const PackingRequest& request) {
+  const auto fault = find_fault(model.room_surface(surface), packing);
   if (!fault) return;
 
   const PackingLimits& limits = packing.limits;
@@ -49,6 +51,9 @@ void require_no_fault(const SurfaceIndex& surface, const Packing& packing, const
     return InputError(fmt::format("{} is {} {} {:.4g} mm", which, relation, option, limit),
                       fmt::format("give the {} it was packed with, or pack again", option));
   };
+  const bool is_kept = model.kept && model.kept->holds(sphere.centre);
+  if (is_kept) throw InputError(which + " is in a region of --keep-solid", "pack again with --keep-solid");
+  const char* const kept = model.kept ? " (to the surface or to a region of --keep-solid)" : "";
   switch (fault->kind) {
     case PackingFault::Kind::outside:
       throw InputError(which + " is outside the model",
@@ -58,8 +63,8 @@ void require_no_fault(const SurfaceIndex& surface, const Packing& packing, const
                        "unite the parts first, or pack this model anew");
     case PackingFault::Kind::wall:
       throw InputError(
-          fmt::format("{}{} leaves a wall of {:.4g} mm, the limit is {:.4g} mm", which, roof,
-                      fault->clearance, limits.wall),
+          fmt::format("{}{} leaves a wall of {:.4g} mm{}, the limit is {:.4g} mm", which, roof,
+                      fault->clearance, kept, limits.wall),
           fmt::format("give the {} it was packed with, or pack again", has_roof ? "--bridge" : "--wall"));
     case PackingFault::Kind::gap:
       throw InputError(
@@ -91,7 +96,13 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
   require_room_for_roofs(*request.method, request.sphere_limits());
   PackingStop stop = request.stop;
   stop.volume = model.inspection.filled_volume;
-  return request.method->pack(model.mesh, request.sphere_limits(), stop, monitor, request.device);
+  Packing packing =
+      request.method->pack(model.room(), request.sphere_limits(), stop, monitor, request.device);
+  // Where parts of the model overlap, the packers take a region for what is filled once.
+  if (model.kept)
+    packing.statistics.overlapped_region += std::erase_if(
+        packing.spheres, [&](const Sphere& sphere) { return model.kept->holds(sphere.centre); });
+  return packing;
 }
 
 // Of what is filled: more than this lies in several parts.
@@ -101,13 +112,17 @@ constexpr double kMostlyOverlapped = 0.5;
 [[noreturn]] void refuse_empty(const PreparedModel& model, const SurfaceIndex& surface,
                                const PackingRequest& request, Monitor& monitor) {
   const PackingLimits limits = request.sphere_limits();
-  const std::string file = model.input.path.filename().string();
+  const std::string file =
+      model.input.path.filename().string() + (model.kept ? ", less what --keep-solid keeps" : "");
   const Sphere largest = largest_inscribed_sphere(surface, monitor);
   // Rounded first, so that nothing reads as -0.0.
   const auto tenths = [](double coordinate) { return std::round(coordinate * 10) / 10 + 0.0; };
   const std::string place = fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", tenths(largest.centre.x),
                                         tenths(largest.centre.y), tenths(largest.centre.z));
   const double fitting = largest.radius - limits.wall;
+  if (model.kept && largest.radius <= 0)
+    throw NothingToRemoveError(file + ": nothing to remove: the regions leave nothing of the model",
+                               "give smaller regions");
   if (model.inspection.overlapped_volume > kMostlyOverlapped * model.inspection.filled_volume) {
     throw NothingToRemoveError(
         fmt::format("{}: nothing to remove: parts overlap in {:.5g} of {:.5g} mm3, which stay solid", file,
@@ -191,14 +206,14 @@ PackingRequest sized_for(const PreparedModel& model, PackingRequest request, Mon
   first_alone.max_count = 1;
   first_alone.volume = model.inspection.filled_volume;
   const Packing largest =
-      request.method->pack(model.mesh, request.sphere_limits(), first_alone, monitor, request.device);
+      request.method->pack(model.room(), request.sphere_limits(), first_alone, monitor, request.device);
   if (!largest.spheres.empty())
     request.process = evenly_large(std::move(request.process), largest.spheres.front().radius);
   return request;
 }
 
 PackedModel pack_model(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
-  require_memory_for_packing(model.mesh, request);
+  require_memory_for_packing(model.room(), request);
   monitor.stage("pack");
   Packing packing = pack_unverified(model, request, monitor);
   if (request.spacing) packing.spheres = spread_out(packing.spheres, *request.spacing);
@@ -206,10 +221,11 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
 
   monitor.stage("verify");
   SurfaceIndex surface(model.mesh);
-  if (!request.spheres.empty()) require_no_fault(surface, packing, request);
-  packing = verify_packing(surface, std::move(packing));
+  const SurfaceIndex& room = model.room_surface(surface);
+  if (!request.spheres.empty()) require_no_fault(model, surface, packing, request);
+  packing = verify_packing(room, std::move(packing));
   monitor.check_interrupted();
-  if (packing.spheres.empty()) refuse_empty(model, surface, request, monitor);
+  if (packing.spheres.empty()) refuse_empty(model, room, request, monitor);
 
   if (model.inspection.parts_overlap() && packing.statistics.overlapped_region > 0)
     monitor.notice(
@@ -228,9 +244,13 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   PackReport report;
   report.method = name_of_method(options.packing);
   report.output = options.output;
-  PreparedModel model = load_and_inspect(options.model, options.load, log);
+  LoadOptions load = options.load;
+  load.wanted_modifiers = names_of_regions(options.keep_solid);
+  PreparedModel model = load_and_inspect(options.model, load, log);
   AnnouncedFile file(options.output, log);
   model = make_usable(std::move(model), {.mode = SurfaceMode::keep, .weld = options.weld}, log);
+  model.kept =
+      keep_solid(model, options.keep_solid, {options.load, options.weld, options.packing.limits().wall}, log);
   report.input = model.input;
   const PackingRequest request = sized_for(model, options.packing, log);
   report.process = request.process;
@@ -241,11 +261,16 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
 
   log.stage("measure");
   report.clearances = measure_clearances(surface, report.packing.spheres, report.packing.limits.roof);
+  if (model.kept)
+    report.kept = {
+        model.kept->count, model.kept->volume,
+        measure_clearances(model.kept->within, report.packing.spheres, report.packing.limits.roof).wall};
   if (cells) {
     Packing of_cells = report.packing;
     of_cells.limits = report.limits;
     report.cells = write_cells(model, surface, of_cells, options, *cells, file, log);
     report.output_bytes = report.cells->file_bytes;
+    if (report.kept && report.cells->pieces) report.kept->wall = report.cells->pieces->kept_wall;
   } else {
     log.stage("write");
     const std::string table = sphere_table(report.packing, *spheres);

@@ -30,7 +30,8 @@ void write_pieces(const PreparedModel& model, const SurfaceIndex& surface, const
                                    .packing = packing,
                                    .cells = &cells,
                                    .drainage = nullptr,
-                                   .tolerance = options.tolerance},
+                                   .tolerance = options.tolerance,
+                                   .kept = model.kept ? &*model.kept : nullptr},
                                   monitor);
   };
   write_checked(pieces, file, {.mesh = &format, .modifiers = {}, .object_name = {}}, check, monitor);

@@ -13,6 +13,7 @@
 #include "core/listed.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
+#include "pipeline/keep_solid.h"
 
 namespace aerate {
 namespace {
@@ -203,6 +204,7 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
     monitor.notice(fmt::format("{}: {}", path.filename().string(), notice));
   }
   model.mesh = std::move(loaded.mesh);
+  model.modifiers = std::move(loaded.modifiers);
   model.input.path = path;
   model.input.format = loaded.format;
   model.input.part_count = loaded.part_count;
@@ -245,11 +247,16 @@ std::string use_of(PreparedModel model, const SurfacePolicy& policy) {
 }
 
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor) {
-  PreparedModel model = load_and_inspect(options.model, options.load, monitor);
+  LoadOptions load = options.load;
+  load.wanted_modifiers = names_of_regions(options.keep_solid);
+  PreparedModel model = load_and_inspect(options.model, load, monitor);
   const double voxel_size = default_voxel_size(options.packing.limits(), model.inspection.box);
-  return make_usable(std::move(model),
-                     {options.surface, options.weld, options.max_hole, {options.voxel_size, voxel_size}},
-                     monitor);
+  model = make_usable(std::move(model),
+                      {options.surface, options.weld, options.max_hole, {options.voxel_size, voxel_size}},
+                      monitor);
+  model.kept = keep_solid(model, options.keep_solid,
+                          {options.load, options.weld, options.packing.limits().wall}, monitor);
+  return model;
 }
 
 }  // namespace aerate

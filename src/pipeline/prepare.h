@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "core/kept_solid.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "files/load.h"
@@ -23,6 +25,14 @@ struct PreparedModel {
   // When the model was remeshed: `mesh` is this level set's zero set.
   std::optional<ModelLevelSet> level_set;
   std::optional<double> outer_deviation;  // see HollowReport
+  std::vector<NamedModifier> modifiers;   // of its file, that were asked for
+  std::optional<KeptSolid> kept;          // regions of it that stay solid
+
+  // Where voids may be: the model less those regions. `surface` is the model's.
+  const Mesh& room() const { return kept ? kept->room : mesh; }
+  const SurfaceIndex& room_surface(const SurfaceIndex& surface) const {
+    return kept ? kept->room_surface : surface;
+  }
 };
 
 // How the surface may be changed to make the model usable.
@@ -45,7 +55,7 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
 // What hollowing will make of a model, in words: whether its surface can be kept, or what stands in the way.
 std::string use_of(PreparedModel model, const SurfacePolicy& policy);
 
-// Both, as `hollow` is asked to. Unless the options say, voxels for remeshing leave room for wall and gap.
+// Both, as `hollow` is asked to, and the regions that stay solid. Unless the options say, voxels for remeshing leave room for wall and gap.
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate

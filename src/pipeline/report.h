@@ -26,6 +26,13 @@ struct StageCost {
   double peak_bytes = 0;
 };
 
+// Regions that stay solid.
+struct KeptFacts {
+  std::size_t count = 0;
+  double volume = 0;           // of what of them is in the model, about, mm3
+  std::optional<double> wall;  // measured between them and what was taken out, mm
+};
+
 // Everything that `hollow` tells; rendered as text and as JSON by the command line.
 struct HollowReport {
   InputFacts input;
@@ -56,6 +63,7 @@ struct HollowReport {
   OutputFacts output;
   // Of voids that drain; absent where each is sealed.
   std::optional<DrainedVoids> drainage;
+  std::optional<KeptFacts> kept;  // absent without such regions
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;
 
@@ -103,6 +111,7 @@ struct PackReport {
   Packing packing;
   double density = 0;
   std::optional<Clearances> clearances;  // of the spheres, measured, fp64
+  std::optional<KeptFacts> kept;         // absent without regions that stay solid
   std::optional<PackedCells> cells;      // absent: the spheres were written
   std::vector<StageCost> stages;
   std::vector<std::string> notices;

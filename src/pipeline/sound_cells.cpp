@@ -78,7 +78,12 @@ CellPlanes planes_of_cells(const PreparedModel& model, const Packing& packing, c
 CellVoids shape_sound_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
                             const CellPlanes& planes, const CellShape& shape, Monitor& monitor) {
   require_memory_for_cells(model.mesh, packing, shape);
-  CellVoids cells = shape_soundly(surface, packing, planes, shape, monitor);
+  CellVoids cells = shape_soundly(model.room_surface(surface), packing, planes, shape, monitor);
+  // A piece keeps the wall from the surface of regions, so that one point tells for all of it.
+  if (model.kept)
+    std::erase_if(cells.voids, [&](const CellVoid& piece) {
+      return model.kept->holds(to_double(piece.surface.positions.front()));
+    });
   if (cells.voids.empty())
     throw NothingToRemoveError(fmt::format("{}: nothing to remove: no cell takes a ball of --fillet {:g} mm",
                                            model.input.path.filename().string(), shape.fillet),

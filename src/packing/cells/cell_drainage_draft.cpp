@@ -59,7 +59,7 @@ CellDrainageTask::CellDrainageTask(const DrainableModel& model, const CellVoids&
       monitor(watched),
       hollows(hollows_of(voids, kept.roof.up, watched)),
       pools(hollows),
-      surfaces(model.surface, voids, kept, 2 * longest_hole(asked, kept)),
+      surfaces(model.surface, voids, kept, 2 * longest_hole(asked, kept), model.kept),
       windows(find_cell_windows(voids, hollows, kept, asked.channel_radius, surfaces, watched)) {
   for (const double radius : {asked.hole_radius, asked.narrow_hole_radius})
     if (radius > 0) places.emplace_back(model, voids, hollows, kept, asked, radius, surfaces);

@@ -44,11 +44,11 @@ std::vector<Vec3d> lines_round(Vec3d at, const Tube& tube, Vec3d up) {
 }
 
 CellSurfaces::CellSurfaces(const SurfaceIndex& model, const CellVoids& cells, const PackingLimits& limits,
-                           double longest)
+                           double longest, const SurfaceIndex* kept)
     : first_(first_triangles(cells)),
       index_(all_surfaces(cells)),
       gap_(limits.gap),
-      model_(model, without_spheres(limits), longest, 0),
+      model_(model, without_spheres(limits), longest, 0, kept),
       voids_(index_, without_spheres(limits), longest, 0) {}
 
 bool CellSurfaces::keeps_gap(const Tube& tube, std::uint32_t from, std::uint32_t to) const {

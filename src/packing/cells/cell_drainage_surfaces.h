@@ -20,9 +20,9 @@ std::vector<Vec3d> lines_round(Vec3d at, const Tube& tube, Vec3d up);
 // The surfaces of all voids and of the model: where rays meet them, and what keeps clear of them.
 class CellSurfaces {
  public:
-  // No ray is longer than `longest`. The model's surface must outlive this.
-  CellSurfaces(const SurfaceIndex& model, const CellVoids& cells, const PackingLimits& limits,
-               double longest);
+  // No ray is longer than `longest`. The model's surface must outlive this, and so must `kept` (see DrainableModel).
+  CellSurfaces(const SurfaceIndex& model, const CellVoids& cells, const PackingLimits& limits, double longest,
+               const SurfaceIndex* kept = nullptr);
   CellSurfaces(const CellSurfaces&) = delete;
   CellSurfaces& operator=(const CellSurfaces&) = delete;
 

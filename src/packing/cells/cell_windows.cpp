@@ -102,7 +102,8 @@ class WindowFinder {
     for (const Vec3d start : lines_round(tube.start, tube, limits_.roof.up)) {
       if (!surfaces_.model().keeps_wall({start, start + along, 0})) return false;
     }
-    return surfaces_.keeps_gap(window.channel.tube, window.channel.from, window.channel.to);
+    return surfaces_.model().keeps_off_kept(window.channel.tube) &&
+           surfaces_.keeps_gap(window.channel.tube, window.channel.from, window.channel.to);
   }
 
   const CellVoids& cells_;
