@@ -204,6 +204,7 @@ void HolePlaces::look_at(Place& place, Vec3d down) const {
 std::vector<EscapeHole> HolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> voids) const {
   const Vec3d on_surface = on_surface_near(place, 2 * request_.hole_radius, clearance_, outward_);
   std::vector<EscapeHole> holes;
+  if (!clearance_.keeps_off_kept({on_surface, on_surface, request_.hole_radius})) return holes;
   for (const std::uint32_t from : voids) {
     const VoidShape& shape = voids_[from];
     constexpr int kDistances = 4;

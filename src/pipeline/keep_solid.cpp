@@ -20,7 +20,7 @@ namespace {
 constexpr double kMarginShare = 0.05;
 
 // Pieces of a region's surface reach out of the model by no more than this share of the wall; mm where there is none.
-constexpr double kPrecisionShare = 0.05, kLeastPrecision = 0.02;
+constexpr double kPrecisionShare = 0.25, kLeastPrecision = 0.05;
 
 // Hands notices on, but begins no stages.
 class WithinAStage : public Monitor {
@@ -140,8 +140,9 @@ std::optional<KeptSolid> keep_solid(const PreparedModel& model, std::span<const 
     const Mesh asked = std::visit(MeshOfRegion{request, model, policy, monitor}, request.shape);
     const Mesh region = pressed_into(box, asked);
     kernels::HostWinding winding(region.positions, region.triangles);
-    require_within(common_volume(winding.view(), surface.winding(), {}), asked, request, model);
-    volume += common_volume(winding.view(), surface.winding(), views);
+    const double own = common_volume(winding.view(), surface.winding(), {});
+    require_within(own, asked, request, model);
+    volume += views.empty() ? own : common_volume(winding.view(), surface.winding(), views);
     earlier.push_back(std::move(winding));
     views.push_back(earlier.back().view());
     append(regions, region);

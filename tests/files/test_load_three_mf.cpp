@@ -130,6 +130,53 @@ TEST_F(Load, ProjectsOfSlicers) {
   }
 }
 
+// Two boxes in one mesh of a project of PrusaSlicer, or as components as OrcaSlicer has them; the second is a modifier.
+std::string project_with_modifiers(bool as_components, const std::string& kind, const std::string& placed) {
+  const Mesh model = odd_box(), modifier = make_box({1, 1, 1}, {2, 2, 2});
+  const std::string objects =
+      as_components
+          ? object_xml(1, mesh_xml(model)) + object_xml(2, mesh_xml(modifier)) +
+                object_xml(3, R"(<components><component objectid="1"/><component objectid="2" transform=")"
+                              R"(1 0 0 0 1 0 0 0 1 10 0 0"/></components>)")
+          : object_xml(3, mesh_xml(join(model, moved(modifier, {10, 0, 0}))));
+  const std::string config =
+      as_components
+          ? R"(<config><object id="3"><part id="1" subtype="normal_part"/><part id="2" subtype=")" + kind +
+                R"("><metadata key="name" value="screw &amp; nut"/></part></object></config>)"
+          : R"(<config><object id="3"><volume firstid="0" lastid="11"><metadata key="volume_type" value="ModelPart"/>)"
+            R"(</volume><volume firstid="12" lastid="23"><metadata key="name" value="screw &amp; nut"/>)"
+            R"(<metadata key="volume_type" value=")" +
+                kind + R"("/></volume></object></config>)";
+  return make_zip(
+      {{"3D/3dmodel.model", model_xml(objects, R"(<item objectid="3")" + placed + "/>")},
+       {as_components ? "Metadata/model_settings.config" : "Metadata/Slic3r_PE_model.config", config}});
+}
+
+TEST_F(Load, ModifiersOfProjectsAreReadApartWhereTheyAreAskedFor) {
+  const LoadOptions options{
+      .unit = {}, .volume_lists = volume_lists(), .wanted_modifiers = {"screw & nut", "not there"}};
+  for (const bool as_components : {false, true}) {
+    const std::string kind = as_components ? "modifier_part" : "ParameterModifier";
+    const LoadedModel loaded = load("p.3mf", project_with_modifiers(as_components, kind, ""), options);
+    expect_same_corners(loaded.mesh, odd_box());
+    EXPECT_EQ(loaded.part_count, 1U);
+    ASSERT_EQ(loaded.modifiers.size(), 1U);
+    EXPECT_EQ(loaded.modifiers[0].name, "screw & nut");
+    expect_same_corners(loaded.modifiers[0].mesh, make_box({11, 1, 1}, {12, 2, 2}));
+    // Where the build puts them.
+    const LoadedModel placed =
+        load("p.3mf", project_with_modifiers(as_components, kind, R"( transform="1 0 0 0 1 0 0 0 1 0 0 5")"),
+             options);
+    expect_same_corners(placed.modifiers[0].mesh, make_box({11, 1, 6}, {12, 2, 7}));
+    // What else is no part of the model is never taken for one.
+    const std::string other = as_components ? "negative_part" : "NegativeVolume";
+    const auto path = write("p.3mf", project_with_modifiers(as_components, other, ""));
+    const std::string refused = message_of<InputError>([&] { load_model(path, options); });
+    EXPECT_TRUE(contains(refused, "'screw & nut'"));
+    EXPECT_TRUE(contains(refused, "not part of the model"));
+  }
+}
+
 TEST_F(Load, Bad3mf) {
   const std::string good = make_3mf(model_xml(object_xml(1, mesh_xml(odd_box())), R"(<item objectid="1"/>)"));
   EXPECT_TRUE(contains(input_error("cut.3mf", good.substr(0, good.size() / 2)), "cut short or damaged"));

@@ -178,6 +178,7 @@ std::optional<CellHole> CellHolePlaces::best(std::span<const Basin::Part> hollow
 std::optional<CellHole> CellHolePlaces::leading_to(Vec3d place, std::span<const std::uint32_t> voids,
                                                    const Accept& accept) const {
   const Vec3d on_surface = on_surface_near(place, 2 * ways_out_.radius(), surfaces_.model(), outward_);
+  if (!surfaces_.model().keeps_off_kept({on_surface, on_surface, ways_out_.radius()})) return std::nullopt;
   Ways ways;
   for (const std::uint32_t from : voids) {
     const VoidNodes& nodes = hollows_[from].nodes();
