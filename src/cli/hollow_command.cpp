@@ -103,6 +103,16 @@ struct HollowCommand {
                              ->capture_default_str());
     modifier_options.add(add_modifier_infill(command, modifier_infill));
     command
+        .add_option("--target-saving", target_saving,
+                    "Stop with the fewest voids that remove this share of the model's volume, percent")
+        ->check(number_between({}, 100, "%"))
+        ->type_name("PERCENT");
+    command
+        .add_option("--target-mass", target_mass,
+                    "Stop with the fewest voids that leave at most this mass of solid --material, g")
+        ->check(number_between({}, 1e9, "g"))
+        ->type_name("G");
+    command
         .add_option(
             "--spheres", spheres,
             "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
@@ -144,6 +154,22 @@ struct HollowCommand {
         ->type_name("PRICE");
   }
 
+  // The one target that was given, if any.
+  std::optional<SavingTarget> target(const HollowOptions& options) const {
+    if (!target_mass && !target_saving) return std::nullopt;
+    if (target_mass && target_saving)
+      throw UsageError("--target-mass and --target-saving are two targets", "give one of them");
+    const char* const option = target_mass ? "--target-mass" : "--target-saving";
+    if (options.modifiers)
+      throw UsageError(fmt::format("{} with --as modifiers: these remove nothing", option),
+                       "leave out one of them");
+    if (target_mass && options.infill_is_known)
+      throw UsageError("--target-mass is of solid material, and a sparse print has less",
+                       "give --target-saving, or leave out what describes the print");
+    return target_mass ? SavingTarget{SavingTarget::Kind::mass, *target_mass}
+                       : SavingTarget{SavingTarget::Kind::share, *target_saving / 100};
+  }
+
   // But for the shape of voids.
   HollowOptions unshaped() const {
     HollowOptions options;
@@ -177,6 +203,7 @@ struct HollowCommand {
     options.max_hole = max_hole;
     options.material = choose_material(material.empty() ? options.packing.process.process.material : material,
                                        density, price);
+    options.target = target(options);
     options.heavier = print.heavier();
     return options;
   }
@@ -196,7 +223,7 @@ struct HollowCommand {
     const std::optional<bool> asked = cells.asks_for_cells();
     const bool makes_cells = asked.value_or(is_cells_unasked(options));
     std::vector<HollowOptions> forms{shaped(options, makes_cells)};
-    const bool can_compare = options.drainage || options.infill_is_known;
+    const bool can_compare = (options.drainage || options.infill_is_known) && !options.target;
     if (asked || cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
     try {
       forms.push_back(shaped(options, !makes_cells));
@@ -246,6 +273,8 @@ struct HollowCommand {
   std::optional<double> voxel_size;
   std::optional<double> max_hole;
   std::string material;
+  std::optional<double> target_mass;
+  std::optional<double> target_saving;
   std::optional<double> density;
   std::optional<double> price;
 };

@@ -237,6 +237,21 @@ Json modifiers_of(const HollowReport& report) {
           {"most_saved_g_per_infill_percent", (use.mass_before_g - use.mass_after_g) / 100}};
 }
 
+// What was asked for in one of its two units, and reached in both.
+Json target_of(const HollowReport& report) {
+  if (!report.target) return nullptr;
+  const TargetFacts& target = *report.target;
+  const bool is_mass = target.asked.kind == SavingTarget::Kind::mass;
+  const OutputFacts& output = report.output;
+  const auto percent = [&](double removed) { return 100 * removed / output.volume_before; };
+  return {{"mass_g", is_mass ? Json(target.asked.value) : Json(nullptr)},
+          {"saving_percent", is_mass ? Json(nullptr) : Json(100 * target.asked.value)},
+          {"reached_mass_g", output.volume_after * report.material.density_g_cm3 / 1000},
+          {"reached_saving_percent", percent(output.volume_removed)},
+          {"voids_to_choose_from", target.all_voids},
+          {"most_saving_percent", percent(target.all_removed)}};
+}
+
 }  // namespace
 
 std::string to_json(const HollowReport& report) {
@@ -264,6 +279,7 @@ std::string to_json(const HollowReport& report) {
                    {"max_radius_mm", output.largest_radius},
                    {"tolerance_used_mm", report.tolerance_used},
                    {"deviation_mm", output.void_deviation}};
+  json["target"] = target_of(report);
   json["measured"] = json_of(output.clearances);
   json["keep_solid"] = json_of(report.kept);
   json["ceilings"] = json_of(output.ceilings, output.roof_count, report.limits);

@@ -233,6 +233,20 @@ void add_volume(Lines& lines, const HollowReport& report) {
             output.volume_before, percent, output.volume_after, estimated);
 }
 
+void add_target(Lines& lines, const HollowReport& report) {
+  if (!report.target) return;
+  const TargetFacts& target = *report.target;
+  const OutputFacts& output = report.output;
+  const std::string voids =
+      fmt::format("{} of {}", grouped(output.void_count), count_of(target.all_voids, "void", "voids"));
+  if (target.asked.kind == SavingTarget::Kind::mass)
+    lines.add("target", "{:g} g at most: {:.4g} g with {}", target.asked.value,
+              output.volume_after * report.material.density_g_cm3 / 1000, voids);
+  else
+    lines.add("target", "{:g} % at least: {:.2f} % with {}", 100 * target.asked.value,
+              100 * output.volume_removed / output.volume_before, voids);
+}
+
 void add_material(Lines& lines, const HollowReport& report) {
   const MaterialUse use = material_use(report);
   const std::string figures =
@@ -301,6 +315,7 @@ std::string to_text(const HollowReport& report) {
               radii(output.smallest_radius, output.largest_radius), report.method, report.packing_density,
               report.packing_device);
   add_volume(lines, report);
+  add_target(lines, report);
   add_clearances(lines, output.clearances, report.limits);
   add_kept(lines, report.kept, report.limits);
   add_ceilings(

@@ -22,12 +22,7 @@ CarvedCells carve_at(const PreparedModel& model, const SurfaceIndex& surface, co
                      Monitor& monitor) {
   const CellShape shape{options.cells->fillet, tolerance};
   CellVoids cells = shape_sound_cells(model, surface, packing, planes, shape, monitor);
-  if (!options.drainage) {
-    Solid solid = carve_cells(model.mesh, cells);
-    return {std::move(cells), std::nullopt, {std::move(solid), tolerance}};
-  }
-  DrainedCells drained = drain_cells(model, surface, cells, packing.limits, options, tolerance, monitor);
-  return {std::move(drained.cells), std::move(drained.voids), {std::move(drained.solid), tolerance}};
+  return carve_some_cells(model, surface, std::move(cells), packing.limits, options, tolerance, monitor);
 }
 
 // `fewest`: of the results that there were, if any.
@@ -47,6 +42,17 @@ bool may_be_too_coarse(const Error& error) {
 }
 
 }  // namespace
+
+CarvedCells carve_some_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
+                             const PackingLimits& limits, const HollowOptions& options, double tolerance,
+                             Monitor& monitor) {
+  if (!options.drainage) {
+    Solid solid = carve_cells(model.mesh, cells);
+    return {std::move(cells), std::nullopt, {std::move(solid), tolerance}};
+  }
+  DrainedCells drained = drain_cells(model, surface, cells, limits, options, tolerance, monitor);
+  return {std::move(drained.cells), std::move(drained.voids), {std::move(drained.solid), tolerance}};
+}
 
 CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
                            const HollowOptions& options, Monitor& monitor) {

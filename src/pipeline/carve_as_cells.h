@@ -26,4 +26,9 @@ struct CarvedCells {
 CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
                            const HollowOptions& options, Monitor& monitor);
 
+// Some of these cells by themselves, at a tolerance at which they were shaped. Throws as drain_cells.
+CarvedCells carve_some_cells(const PreparedModel& model, const SurfaceIndex& surface, CellVoids cells,
+                             const PackingLimits& limits, const HollowOptions& options, double tolerance,
+                             Monitor& monitor);
+
 }  // namespace aerate

@@ -1,11 +1,14 @@
 #include "pipeline/carve_model.h"
 
 #include <fmt/format.h>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "pipeline/budget.h"
 #include "pipeline/carve_as_cells.h"
+#include "pipeline/held_notices.h"
 #include "pipeline/pack.h"
 #include "pipeline/print_prediction.h"
 #include "printing/carve.h"
@@ -68,22 +71,59 @@ CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, const
   return carved;
 }
 
+// Voids in the shapes of a packing, as far as they drain if the options ask for it.
+MadeVoids make_spheres(const PreparedModel& model, const SurfaceIndex& surface, Packing packing,
+                       const ProcessChoice& process, const HollowOptions& options, Monitor& monitor) {
+  auto [made, drainage, outer] = drain(model, surface, std::move(packing), process, options, monitor);
+  CarvedModel carved = carve(model, surface, made, drainage, std::move(outer), options, monitor);
+  return {std::move(made), std::nullopt, std::move(drainage), std::move(carved)};
+}
+
+MadeVoids make_cells(const PreparedModel& model, const SurfaceIndex& surface, Packing packing,
+                     const HollowOptions& options, Monitor& monitor) {
+  auto [cells, drainage, carved] = carve_as_cells(model, surface, packing, options, monitor);
+  warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
+  return {std::move(packing), std::move(cells), std::move(drainage), std::move(carved)};
+}
+
+MadeVoids make_to_target(const PreparedModel& model, const SurfaceIndex& surface, MadeVoids all,
+                         const ProcessChoice& process, const HollowOptions& options, TargetFacts& facts,
+                         Monitor& monitor) {
+  const std::optional<CellVoids> cells = all.cells;
+  const Packing packing = all.packing;
+  const double tolerance = all.carved.tolerance;
+  const auto some_spheres = [&](std::span<const std::uint32_t> voids, Monitor& within) {
+    return make_spheres(model, surface, with_only(packing, voids), process, options, within);
+  };
+  const auto some_cells = [&](std::span<const std::uint32_t> voids, Monitor& within) {
+    auto [made, drainage, carved] = carve_some_cells(model, surface, with_only(*cells, voids), packing.limits,
+                                                     options, tolerance, within);
+    return MadeVoids{packing, std::move(made), std::move(drainage), std::move(carved)};
+  };
+  return to_target(model, *options.target, options.material, std::move(all),
+                   cells ? MakeSome(some_cells) : MakeSome(some_spheres), facts, monitor);
+}
+
 HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
   PackingRequest request = request_of(options, monitor);
   PreparedModel model = prepare_model(options, monitor);
   request = sized_for(model, std::move(request), monitor);
   auto [packing, surface] = pack_model(model, request, monitor);
-  if (options.cells) {
-    packing.limits = request.limits();
-    auto [cells, drainage, carved] = carve_as_cells(model, surface, packing, options, monitor);
-    warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
-    return {std::move(request), std::move(model),    std::move(surface), std::move(packing),
-            std::move(cells),   std::move(drainage), std::move(carved)};
+  if (options.cells) packing.limits = request.limits();
+  HeldNotices held(monitor);
+  MadeVoids made = options.cells
+                       ? make_cells(model, surface, std::move(packing), options, held)
+                       : make_spheres(model, surface, std::move(packing), request.process, options, held);
+  std::optional<TargetFacts> target;
+  if (options.target) {
+    monitor.stage("target");
+    made.notices = held.take();
+    made =
+        make_to_target(model, surface, std::move(made), request.process, options, target.emplace(), monitor);
   }
-  auto [made, drainage, outer] = drain(model, surface, std::move(packing), request.process, options, monitor);
-  CarvedModel carved = carve(model, surface, made, drainage, std::move(outer), options, monitor);
-  return {std::move(request), std::move(model),    std::move(surface), std::move(made),
-          std::nullopt,       std::move(drainage), std::move(carved)};
+  held.pass_on();
+  return {std::move(request),    std::move(model),         std::move(surface),     std::move(made.packing),
+          std::move(made.cells), std::move(made.drainage), std::move(made.carved), target};
 }
 
 }  // namespace

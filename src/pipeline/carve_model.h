@@ -9,6 +9,7 @@
 #include "pipeline/drain.h"
 #include "pipeline/options.h"
 #include "pipeline/prepare.h"
+#include "pipeline/target.h"
 
 namespace aerate {
 
@@ -21,6 +22,7 @@ struct HollowedModel {
   std::optional<CellVoids> cells;        // what is made of them; absent: voids are the packing's own shapes
   std::optional<DrainedVoids> drainage;  // absent: each is sealed
   CarvedModel carved;
+  std::optional<TargetFacts> target;
 };
 
 // Loads, inspects, mends, packs, verifies, drains and carves; writes nothing. Throws what `hollow` throws.

@@ -98,12 +98,6 @@ void tell_of(const DrainedVoids& drainage, std::size_t packed, double plate, Mon
         pools.after_both, 100 * pools.after_both / pools.total));
 }
 
-Packing with_only(const Packing& packing, std::span<const std::uint32_t> kept) {
-  Packing part{{}, packing.limits, packing.statistics, packing.device};
-  for (const std::uint32_t i : kept) part.spheres.push_back(packing.spheres[i]);
-  return part;
-}
-
 // Throws UsageError unless fp32 can hold the sides of such a tube anywhere in the model.
 void require_resolvable(const Mesh& model, double radius, double tolerance, const char* what) {
   constexpr double kStepsPerSide = 8;
@@ -247,6 +241,18 @@ FailureError too_many_refused(const Tube& tube, bool is_uncut, const Roof& roof)
 
 }  // namespace
 
+Packing with_only(const Packing& packing, std::span<const std::uint32_t> kept) {
+  Packing part{{}, packing.limits, packing.statistics, packing.device};
+  for (const std::uint32_t i : kept) part.spheres.push_back(packing.spheres[i]);
+  return part;
+}
+
+CellVoids with_only(const CellVoids& cells, std::span<const std::uint32_t> kept) {
+  CellVoids part{cells.planes, cells.lattice, cells.ball_radius, {}};
+  for (const std::uint32_t i : kept) part.voids.push_back(cells.voids[i]);
+  return part;
+}
+
 std::size_t DrainedVoids::count_narrow_holes() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       plan.holes, [&](const EscapeHole& hole) { return hole.tube.radius < request.hole_radius; }));
@@ -308,8 +314,7 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
     while (true) {
       PlannedCellDrainage planned =
           plan_cell_drainage(drainable, cells, limits, request, can_open, can_open_wall, monitor);
-      CellVoids kept{cells.planes, cells.lattice, cells.ball_radius, {}};
-      for (const std::uint32_t i : planned.kept) kept.voids.push_back(cells.voids[i]);
+      CellVoids kept = with_only(cells, planned.kept);
       auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
       auto* solid = std::get_if<Solid>(&carved);
       const std::vector<Tube> unfit =

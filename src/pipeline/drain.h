@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include "core/cells.h"
 #include "core/drainage.h"
@@ -25,6 +27,10 @@ struct DrainedVoids {
   // Of the holes, those for which there was no place of the usual width.
   std::size_t count_narrow_holes() const;
 };
+
+// Some of the voids, by their indices.
+Packing with_only(const Packing& packing, std::span<const std::uint32_t> kept);
+CellVoids with_only(const CellVoids& cells, std::span<const std::uint32_t> kept);
 
 // The voids that are made. If they drain: how, and the model's surface with the holes cut.
 struct DrainedPacking {

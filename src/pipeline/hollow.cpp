@@ -78,6 +78,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.drainage = hollowed.drainage;
   report.volume_estimated = model.inspection.parts_overlap();
   report.balance = written.balance;
+  report.target = hollowed.target;
   if (model.kept) report.kept = {model.kept->count, model.kept->volume, written.facts.kept_wall};
   report.print = print;
   report.material = options.material;

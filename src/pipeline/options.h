@@ -93,6 +93,16 @@ struct ObjectName {
   std::string name;
 };
 
+// Where to stop: with the fewest voids that reach it.
+struct SavingTarget {
+  enum class Kind {
+    mass,   // of the result, as solid material, at most: g
+    share,  // of the model's volume that is removed, at least: 0 to 1
+  };
+  Kind kind = Kind::share;
+  double value = 0;
+};
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
@@ -122,6 +132,8 @@ struct HollowOptions {
   std::optional<double> max_hole;
 
   Material material;
+  // If given, not for modifiers.
+  std::optional<SavingTarget> target;
 
   // How filament is printed.
   PrintSettings print;

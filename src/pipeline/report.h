@@ -15,6 +15,7 @@
 #include "pipeline/input_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
+#include "pipeline/target.h"
 #include "printing/strength.h"
 
 namespace aerate {
@@ -63,7 +64,8 @@ struct HollowReport {
   OutputFacts output;
   // Of voids that drain; absent where each is sealed.
   std::optional<DrainedVoids> drainage;
-  std::optional<KeptFacts> kept;  // absent without such regions
+  std::optional<KeptFacts> kept;      // absent without such regions
+  std::optional<TargetFacts> target;  // absent where none was asked for
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;
 
