@@ -1,7 +1,7 @@
 #include "pipeline/carve_model.h"
 
-#include <fmt/format.h>
 #include <cstdint>
+#include <fmt/format.h>
 #include <optional>
 #include <span>
 #include <utility>
@@ -111,9 +111,10 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
   auto [packing, surface] = pack_model(model, request, monitor);
   if (options.cells) packing.limits = request.limits();
   HeldNotices held(monitor);
+  Monitor& making = options.target ? held : monitor;
   MadeVoids made = options.cells
-                       ? make_cells(model, surface, std::move(packing), options, held)
-                       : make_spheres(model, surface, std::move(packing), request.process, options, held);
+                       ? make_cells(model, surface, std::move(packing), options, making)
+                       : make_spheres(model, surface, std::move(packing), request.process, options, making);
   std::optional<TargetFacts> target;
   if (options.target) {
     monitor.stage("target");
@@ -121,7 +122,6 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
     made =
         make_to_target(model, surface, std::move(made), request.process, options, target.emplace(), monitor);
   }
-  held.pass_on();
   return {std::move(request),    std::move(model),         std::move(surface),     std::move(made.packing),
           std::move(made.cells), std::move(made.drainage), std::move(made.carved), target};
 }

@@ -267,7 +267,8 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
   warn_of_wide_tubes(process, roof, *options.drainage, monitor);
   require_resolvable_tubes(model.mesh, *options.drainage, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
-  const DrainableModel drainable{surface, outward.winding(), kept_in(model), lowest_along(model.mesh, roof.up)};
+  const DrainableModel drainable{surface, outward.winding(), kept_in(model),
+                                 lowest_along(model.mesh, roof.up)};
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
     const WayOut way{hole.tube, packing.spheres[hole.from]};
@@ -302,7 +303,8 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   monitor.stage("drain");
   require_resolvable_tubes(model.mesh, *options.drainage, tolerance);
   const OutwardShells outward(model.mesh, model.inspection, surface);
-  const DrainableModel drainable{surface, outward.winding(), kept_in(model), lowest_along(model.mesh, limits.roof.up)};
+  const DrainableModel drainable{surface, outward.winding(), kept_in(model),
+                                 lowest_along(model.mesh, limits.roof.up)};
   std::vector<Tube> refused;
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
     return !is_among(refused, tube) &&

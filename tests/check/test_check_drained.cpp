@@ -15,6 +15,7 @@
 #include "packing/plan_drainage.h"
 #include "packing/tube_through.h"
 #include "pipeline/drain.h"
+#include "pipeline/keep_solid.h"
 #include "pipeline/solid_file.h"
 #include "printing/carve_drained.h"
 #include "tests/support/caught.h"
@@ -84,8 +85,20 @@ class CheckDrained : public testing::Test {
                           .inspection = inspect(model_),
                           .packing = packing_,
                           .drainage = &plan_,
-                          .tolerance = tolerance_},
+                          .tolerance = tolerance_,
+                          .kept = kept_ ? &*kept_ : nullptr},
                          silent);
+  }
+  // A region that stays solid half a millimetre beside the middle or the end of a tube.
+  void keep_beside(const Tube& tube, double share) {
+    PreparedModel model;
+    model.mesh = model_;
+    model.inspection = inspect(model_);
+    const Vec3d at = tube.start + (tube.end - tube.start) * share;
+    const Vec3d centre = at + frame_of(tube, {0, 0, 1}).across * (tube.radius + 1);
+    const std::vector<RegionRequest> regions{{"", BallRegion{centre, 0.5}}};
+    Monitor silent;
+    kept_ = keep_solid(model, regions, {.load = {}, .weld = {}, .wall = kLimits.wall}, silent);
   }
   void carve() {
     Monitor silent;
@@ -99,6 +112,7 @@ class CheckDrained : public testing::Test {
   static constexpr double kTolerance = 0.05;
 
   double tolerance_ = kTolerance;
+  std::optional<KeptSolid> kept_;
   Mesh model_;
   Packing packing_;
   DrainagePlan plan_;
@@ -122,6 +136,13 @@ TEST_F(CheckDrained, MeasuresASoundResult) {
 TEST_F(CheckDrained, AMovedTriangleOfTheOuterSurface) {
   solid_.mesh.positions[solid_.mesh.triangles[0][0]].x += 0.01F;
   expect_found("is not the one of the model");
+}
+
+TEST_F(CheckDrained, AChannelOrAHoleBesideWhatStaysSolid) {
+  keep_beside(plan_.channels[0].tube, 0.5);
+  expect_found("beside a region that stays solid");
+  keep_beside(plan_.holes[0].tube, 1);
+  expect_found("beside a region that stays solid");
 }
 
 TEST_F(CheckDrained, AnOpenEdge) {
