@@ -224,7 +224,21 @@ struct HollowCommand {
     const bool makes_cells = asked.value_or(is_cells_unasked(options));
     std::vector<HollowOptions> forms{shaped(options, makes_cells)};
     const bool can_compare = (options.drainage || options.infill_is_known) && !options.target;
-    if (asked || cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
+    const bool says_how_large = !is_default(options.packing.process, Limit::max_radius) ||
+                                !is_default(options.packing.process, Limit::min_radius) ||
+                                options.packing.stop.max_count != PackingStop{}.max_count;
+    if (cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
+    if (makes_cells && options.drainage && !says_how_large) {
+      forms.push_back(forms.front());
+      forms.back().packing.process = with_larger_cells(std::move(forms.back().packing.process));
+    }
+    // More freedom is not to remove less.
+    if (const auto usual = with_usual_limits(options.packing.process); usual && options.drainage) {
+      HollowOptions within = options;
+      within.packing.process = *usual;
+      forms.push_back(shaped(std::move(within), makes_cells));
+    }
+    if (asked) return forms;
     try {
       forms.push_back(shaped(options, !makes_cells));
     } catch (const UsageError&) {

@@ -178,6 +178,18 @@ Json json_of(const TrappedPools& pools) {
           {"after_both_percent", pools.total > 0 ? 100 * pools.after_both / pools.total : 0}};
 }
 
+const char* name_of(HolePurpose purpose) {
+  switch (purpose) {
+    case HolePurpose::asked:
+      return "asked";
+    case HolePurpose::drain:
+      return "drain";
+    case HolePurpose::pool:
+      return "pool";
+  }
+  return "";
+}
+
 Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
   Json holes = Json::array();
   for (const EscapeHole& hole : drainage.plan.holes) {
@@ -185,7 +197,9 @@ Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
     holes.push_back({{"place_mm", json_of(hole.tube.end)},
                      {"outwards", json_of(normalised(along))},
                      {"diameter_mm", 2 * hole.tube.radius},
-                     {"network", hole.network}});
+                     {"network", hole.network},
+                     {"purpose", name_of(hole.purpose)},
+                     {"shows_percent", 100 * hole.shows}});
   }
   return {{"channel_diameter_mm", 2 * drainage.request.channel_radius},
           {"hole_diameter_mm", 2 * drainage.request.hole_radius},

@@ -158,6 +158,10 @@ void add_drainage(Lines& lines, const HollowReport& report) {
   std::string places;
   for (const EscapeHole& hole : plan.holes) places += (places.empty() ? "" : ", ") + point(hole.tube.end);
   lines.add("", "holes at {} mm", places);
+  const auto for_pools = std::ranges::count(plan.holes, HolePurpose::pool, &EscapeHole::purpose);
+  if (for_pools > 0)
+    lines.add("", "{} of them for pools that would stay, beyond the two of each group of voids ({})",
+              for_pools, count_of(plan.network_count, "group", "groups"));
   const TrappedPools& pools = plan.pools;
   lines.add("", "{:.1f} mm3 stay as printed, {:.1f} upside down, {:.1f} ({:.2f} % of the voids) after both",
             pools.upright, pools.upside_down, pools.after_both, 100 * pools.after_both / pools.total);

@@ -35,6 +35,8 @@ struct DrainageRequest {
   std::vector<Vec3d> escape_holes;
   HoleSides sides = {};       // of those that supplement them
   bool avoids_plate = false;  // none of these opens onto the build plate
+  // Of the height of what is opened, so much is given for a place that does not show at all.
+  double worth_of_hiding = 0.25;
 };
 
 // A straight round tube about the axis from `start` to `end`.
@@ -52,12 +54,21 @@ struct Channel {
   Tube tube;
 };
 
+// What a hole is for.
+enum class HolePurpose {
+  asked,  // it was asked for there
+  drain,  // one of the two that each network needs
+  pool,   // more would stay without it than may
+};
+
 // A way out of a void. All of it that is outside the ball lies beyond `tube.start`; its axis meets the
 // model's surface at `tube.end`.
 struct EscapeHole {
   std::uint32_t from = 0;
   Tube tube;
   std::uint32_t network = 0;
+  HolePurpose purpose = HolePurpose::drain;
+  double shows = 0;  // how much its place shows, 0 to 1 (packing/hole_showing.h)
 };
 
 // Volume that stays, mm3: full voids drain in print orientation, then what is left drains upside down.

@@ -96,7 +96,8 @@ HolePlaces::Ranking::Ranking(const HolePlaces& places, std::span<Place* const> c
 }
 
 double HolePlaces::Ranking::cost_of(const Place& place) const {
-  return place.sill - lowest_ + kShowingWeight * height_ * place.showing + kLengthWeight * place.length;
+  return place.sill - lowest_ + places_.request_.worth_of_hiding * height_ * place.showing +
+         kLengthWeight * place.length;
 }
 
 void HolePlaces::Ranking::push(std::size_t number, Place& place) {

@@ -69,6 +69,8 @@ class HolePlaces {
   // if the surface is farther than the hole's diameter from there.
   std::vector<EscapeHole> leading_to(Vec3d place, std::span<const std::uint32_t> voids) const;
 
+  const HoleShowing& showing() const { return showing_; }
+
   // Does the tube keep the wall on its way to the surface and the gap from voids, meet the surface not too
   // obliquely, and open to the outside of every shell? Remembered.
   bool is_sound(const EscapeHole& hole);

@@ -24,9 +24,7 @@ inline constexpr double kLeastSlope = 0.5;
 bool leads_outside(const Tube& tube, double wall, const TubeClearance& clearance,
                    const kernels::WindingView& outward);
 
-// Weights of what makes a place good, in heights of what is opened: a quarter of it is given for a place that
-// does not show.
-inline constexpr double kShowingWeight = 0.25;
+// Weight of what makes a place good beside its height and DrainageRequest::worth_of_hiding.
 inline constexpr double kLengthWeight = 0.2;  // a millimetre of tube for each millimetre of height
 
 // Directions in which holes are looked for: spread evenly over the half of the unit sphere about `axis`, which

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 
 #include "core/facet_distance.h"
 #include "packing/hole_rules.h"
@@ -80,6 +82,20 @@ double HoleShowing::of(const Tube& hole) const {
     if (!clearance_.first_hit(start, view, far_off)) seen += weight * along;
   }
   return all > 0 ? seen / all : 1;
+}
+
+void describe_holes(std::vector<EscapeHole>& holes, const DrainageRequest& request,
+                    const HoleShowing& showing) {
+  constexpr std::size_t kNeeded = 2;
+  std::map<std::uint32_t, std::size_t> count;  // by network
+  for (EscapeHole& hole : holes) {
+    const bool is_asked = std::ranges::any_of(request.escape_holes, [&](Vec3d place) {
+      return length(hole.tube.end - place) <= 3 * hole.tube.radius;
+    });
+    const bool is_needed = ++count[hole.network] <= kNeeded;
+    hole.shows = showing.of(hole.tube);
+    hole.purpose = is_asked ? HolePurpose::asked : is_needed ? HolePurpose::drain : HolePurpose::pool;
+  }
 }
 
 }  // namespace aerate

@@ -35,4 +35,9 @@ class HoleShowing {
   std::vector<Vec3d> views_;  // evenly over the unit sphere
 };
 
+// Says of the holes of a plan how much they show and what they are for: those at places that were asked for; the first two
+// of each network; and what was added to these for pools.
+void describe_holes(std::vector<EscapeHole>& holes, const DrainageRequest& request,
+                    const HoleShowing& showing);
+
 }  // namespace aerate

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "packing/drainage_draft.h"
 #include "packing/drainage_refusals.h"
+#include "packing/hole_showing.h"
 #include "packing/open_networks.h"
 #include "packing/reduce_pools.h"
 
@@ -37,7 +38,9 @@ PlannedDrainage plan_drainage(const DrainableModel& model, const Packing& packin
   draft = add_channels_for_pools(task, std::move(draft));
   draft = leave_out_pools(task, std::move(draft));
   if (draft.tubes.plan().holes.empty()) throw all_stays_full(request);
-  return planned(task, draft);
+  PlannedDrainage result = planned(task, draft);
+  describe_holes(result.plan.holes, request, task.places.showing());
+  return result;
 }
 
 }  // namespace aerate

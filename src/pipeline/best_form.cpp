@@ -54,19 +54,54 @@ bool may_be_done_otherwise(const Error& error) {
   return error.code() == ExitCode::nothing_to_remove || error.code() == ExitCode::failure;
 }
 
+std::size_t count_groups(const HollowedForm& form) {
+  const auto& drainage = form.hollowed.drainage;
+  return drainage ? drainage->plan.network_count : 1;
+}
+
+double cell_size(const HollowOptions& options) {
+  const PackingLimits limits = options.packing.limits();
+  return 2 * limits.max_radius + limits.gap;
+}
+
+// Whether another form may be better than the best so far.
+bool is_worth_trying(const HollowOptions& other, const HollowedForm& best) {
+  if (best.options->infill_is_known || leaves_out_much(best)) return true;
+  if (other.cells.has_value() != best.options->cells.has_value()) return false;
+  // Each group of voids takes two holes; there are fewer groups of larger cells.
+  const bool are_larger = cell_size(other) > cell_size(*best.options);
+  return !are_larger || count_groups(best) > 1;
+}
+
 std::string name_of(const HollowedForm& form) {
-  return form.options->cells ? "cells" : "spheres";
+  if (!form.options->cells) return "spheres";
+  return fmt::format("cells of {:g} mm", cell_size(*form.options));
+}
+
+std::string option_of(const HollowOptions& options) {
+  if (!options.cells) return "--shape spheres";
+  return fmt::format("--shape cells --cell-size {:g}", cell_size(options));
 }
 
 std::string figures_of(const HollowedForm& form) {
   if (is_by_filament(form))
     return fmt::format("{:.2f} cm3 of filament", form.print->filament_after_mm3 / 1000);
-  return fmt::format("{:.2f} cm3 removed", removed_volume(form) / 1000);
+  std::string figures = fmt::format("{:.2f} cm3 removed", removed_volume(form) / 1000);
+  if (const auto& drainage = form.hollowed.drainage)
+    figures += fmt::format(" and {} escape holes", drainage->plan.holes.size());
+  return figures;
+}
+
+// Whether a user might want what was not chosen.
+bool is_of_interest(const HollowedForm& other, const HollowedForm& chosen) {
+  if (is_by_filament(chosen) || !chosen.hollowed.drainage || !other.hollowed.drainage) return true;
+  return removed_volume(other) > removed_volume(chosen) ||
+         other.hollowed.drainage->plan.holes.size() < chosen.hollowed.drainage->plan.holes.size();
 }
 
 std::string choice_in_words(const HollowedForm& chosen, const HollowedForm& other) {
-  return fmt::format("voids are {}, with {}; {} would be {} (--shape {})", name_of(chosen),
-                     figures_of(chosen), name_of(other), figures_of(other), name_of(other));
+  return fmt::format("voids are {}, with {}; {} would be {} ({})", name_of(chosen), figures_of(chosen),
+                     name_of(other), figures_of(other), option_of(*other.options));
 }
 
 }  // namespace
@@ -78,13 +113,16 @@ HollowedForm carve_best_form(std::span<const HollowOptions> forms, Monitor& moni
   std::vector<std::string> notices;
   std::optional<Error> refusal;  // of the preferred form
   for (const HollowOptions& options : forms) {
+    if (best && !is_worth_trying(options, *best)) continue;
     HeldNotices held(monitor);
     try {
       HollowedForm form = carve_form(options, held);
       const bool is_better = !best || worth(form) > worth(*best);
-      const std::string choice = !best       ? ""
-                                 : is_better ? choice_in_words(form, *best)
-                                             : choice_in_words(*best, form);
+      std::string choice;
+      if (best && is_better)
+        choice = choice_in_words(form, *best);
+      else if (best && is_of_interest(form, *best))
+        choice = choice_in_words(*best, form);
       if (is_better) {
         best = std::move(form);
         notices = held.take();
@@ -95,12 +133,11 @@ HollowedForm carve_best_form(std::span<const HollowOptions> forms, Monitor& moni
       if (error.code() == ExitCode::interrupted || (is_preferred && !may_be_done_otherwise(error))) throw;
       if (is_preferred) refusal = error;
     }
-    if (best && !preferred.infill_is_known && !leaves_out_much(*best)) break;
   }
   if (!best) throw Error(*refusal);
   if (refusal)
-    notices.push_back(fmt::format("voids are {}, since of {} {}", name_of(*best),
-                                  preferred.cells ? "cells" : "spheres", refusal->what()));
+    notices.push_back(
+        fmt::format("voids are {}, since with {} {}", name_of(*best), option_of(preferred), refusal->what()));
   for (const std::string& notice : notices) monitor.notice(notice);
   return std::move(*best);
 }

@@ -20,7 +20,9 @@ struct HollowedForm {
 // Of the forms that the same job may take, the best. `forms`: at least one, the preferred one first; they read one model
 // and write one file. Where the print is described, that which takes the least filament. Else the first, unless it
 // cannot be made or leaves out much of what was packed; the others are then made as well, and that which removes most
-// is taken, with a notice. Throws what carve_model and predict_print throw for the first form if none can be made.
+// is taken, an escape hole being worth half a percent of it. Larger cells are made too where those of the first are several
+// groups, each with two holes of its own. Of what was compared a notice has the figures. Throws what carve_model and
+// predict_print throw for the first form if none can be made.
 HollowedForm carve_best_form(std::span<const HollowOptions> forms, Monitor& monitor);
 
 }  // namespace aerate

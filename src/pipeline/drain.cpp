@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -35,6 +34,9 @@ namespace {
 const SurfaceIndex* kept_in(const PreparedModel& model) {
   return model.kept ? &model.kept->within : nullptr;
 }
+
+// Of the voids' volume: for more than this, holes may open onto the build plate.
+constexpr double kMuchLost = 0.03;
 
 // By this factor the tolerance is loosened, so many times at most.
 constexpr double kLooser = 1.25;
@@ -202,26 +204,43 @@ double lowest_along(const Mesh& mesh, Vec3d up) {
   return lowest;
 }
 
-// What is drained without a hole that the build plate closes, unless much more is with such holes. `voids_of` says how the
-// voids of a result drain.
+// How good a plan is, the less the better: the share of the voids' volume that is not made, and what its holes are worth.
+double cost_of(const DrainedVoids& drained) {
+  constexpr double kWorthOfHole = 0.005;  // beyond the two of each network
+  constexpr double kWorthOfPlate = 0.03;  // that no hole is closed by it
+  const double all = drained.plan.pools.total + drained.dropped.volume;
+  const double needed = 2 * static_cast<double>(drained.plan.network_count);
+  const double more = static_cast<double>(drained.plan.holes.size()) - needed;
+  return drained.dropped.volume / all + kWorthOfHole * more +
+         (drained.request.avoids_plate ? 0 : kWorthOfPlate);
+}
+
+// The best of several plans: off the build plate and where holes hardly show; off it, but low rather than hidden; and
+// anywhere. The next is tried where the one before leaves something to be wished. `voids_of` says how the voids of a
+// result drain. Throws what `drained_under` throws for the last if none can be made.
 template <typename DrainedUnder, typename VoidsOf>
-auto rather_off_plate(DrainageRequest request, const DrainedUnder& drained_under, const VoidsOf& voids_of) {
-  constexpr double kMuchMore = 0.03;  // of all voids' volume
-  request.avoids_plate = true;
-  std::optional<decltype(drained_under(request))> off_plate;
-  try {
-    off_plate = drained_under(request);
-  } catch (const NothingToRemoveError&) {
-    // Perhaps there is a place on the plate.
-  }
-  const auto dropped = [&](const auto& drained) { return voids_of(drained).get().dropped.volume; };
-  const double all =
-      off_plate ? dropped(*off_plate) + voids_of(*off_plate).get().plan.pools.total : kInfinity;
-  if (off_plate && dropped(*off_plate) <= kMuchMore * all) return std::move(*off_plate);
-  request.avoids_plate = false;
-  auto anywhere = drained_under(request);
-  if (off_plate && dropped(*off_plate) <= dropped(anywhere) + kMuchMore * all) return std::move(*off_plate);
-  return anywhere;
+auto best_drained(const DrainageRequest& asked, const DrainedUnder& drained_under, const VoidsOf& voids_of) {
+  constexpr double kLowRatherThanHidden = 0.08;
+  constexpr double kLittle = 0.003;
+  DrainageRequest hidden = asked, low = asked;
+  hidden.avoids_plate = low.avoids_plate = true;
+  low.worth_of_hiding = kLowRatherThanHidden;
+  std::optional<decltype(drained_under(asked))> best;
+  const auto cost = [&] { return best ? cost_of(voids_of(*best)) : kInfinity; };
+  const auto try_plan = [&](const DrainageRequest& request, bool is_last) {
+    try {
+      auto drained = drained_under(request);
+      if (cost_of(voids_of(drained)) < cost()) best = std::move(drained);
+    } catch (const NothingToRemoveError&) {
+      if (is_last && !best) throw;
+    }
+  };
+  const bool is_all_asked_for = asked.escape_holes.size() >= 2;
+  if (!is_all_asked_for) try_plan(hidden, false);
+  // That loses holes, not voids.
+  if (cost() > kLittle && cost() <= kMuchLost) try_plan(low, false);
+  if (cost() > kMuchLost) try_plan(asked, true);
+  return std::move(*best);
 }
 
 // What stands in the way at the last of the tubes of cells that were refused.
@@ -291,8 +310,9 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
       for (const std::size_t i : failed) refused.push_back(planned.plan.holes[i].tube);
     }
   };
-  DrainedPacking drained = rather_off_plate(
-      *options.drainage, drained_under, [](const DrainedPacking& made) { return std::cref(*made.voids); });
+  DrainedPacking drained =
+      best_drained(*options.drainage, drained_under,
+                   [](const DrainedPacking& made) -> const DrainedVoids& { return *made.voids; });
   tell_of(*drained.voids, packing.spheres.size(), drainable.plate, monitor);
   return drained;
 }
@@ -332,8 +352,9 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
       }
     }
   };
-  DrainedCells drained = rather_off_plate(*options.drainage, drained_under,
-                                          [](const DrainedCells& made) { return std::cref(made.voids); });
+  DrainedCells drained =
+      best_drained(*options.drainage, drained_under,
+                   [](const DrainedCells& made) -> const DrainedVoids& { return made.voids; });
   tell_of(drained.voids, cells.voids.size(), drainable.plate, monitor);
   return drained;
 }

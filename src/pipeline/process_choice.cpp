@@ -135,6 +135,31 @@ bool is_lowered_for_cells(const ProcessChoice& choice) {
   return is_default(choice, Limit::min_radius) && least < choice.process.limits.at(Limit::min_radius).value;
 }
 
+ProcessChoice with_larger_cells(ProcessChoice choice) {
+  LimitValue& largest = choice.limits.at(Limit::max_radius);
+  const double size = 2 * largest.value + choice.limits.at(Limit::gap).value;
+  largest = {2 * largest.value, "", fmt::format("of cells twice as large as those of {:g} mm", size)};
+  return choice;
+}
+
+std::optional<ProcessChoice> with_usual_limits(const ProcessChoice& choice) {
+  ProcessChoice usual = choice;
+  bool allows_more = false;
+  for (const Limit limit : {Limit::wall, Limit::gap, Limit::min_radius, Limit::max_radius}) {
+    const auto own = choice.process.limits.find(limit);
+    if (own == choice.process.limits.end() || is_default(choice, limit)) continue;
+    LimitValue& value = usual.limits.at(limit);
+    const bool is_freer =
+        limit == Limit::max_radius ? value.value > own->second.value : value.value < own->second.value;
+    if (!is_freer) continue;
+    value = {own->second.value, own->second.source, default_of(choice.process)};
+    allows_more = true;
+  }
+  const PackingLimits limits = packing_limits(usual);
+  if (!allows_more || limits.min_radius > limits.max_radius) return std::nullopt;
+  return usual;
+}
+
 ProcessChoice evenly_large(ProcessChoice choice, double fitting) {
   if (!is_default(choice, Limit::min_radius)) return choice;
   LimitValue& least = choice.limits.at(Limit::min_radius);

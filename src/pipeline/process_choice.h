@@ -54,6 +54,13 @@ ProcessChoice kept_to_balls_without_roofs(ProcessChoice choice);
 // that leaves no radius, or if a largest radius was given beside it.
 ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_size);
 
+// The same with cells twice as large.
+ProcessChoice with_larger_cells(ProcessChoice choice);
+
+// The choice with the process's own wall, gap and radii where those that were given allow more. Results under it obey what
+// was given. nullopt if none does.
+std::optional<ProcessChoice> with_usual_limits(const ProcessChoice& choice);
+
 // The same, with evenly large spheres, whose cells take more than those of many small ones beside large ones: unless
 // the user gave the least radius, it becomes half of the largest that there will be, `fitting` or the limit.
 ProcessChoice evenly_large(ProcessChoice choice, double fitting);

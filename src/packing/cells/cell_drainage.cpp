@@ -5,6 +5,7 @@
 #include "packing/cells/cell_drainage_draft.h"
 #include "packing/cells/cell_drainage_stages.h"
 #include "packing/drainage_refusals.h"
+#include "packing/hole_showing.h"
 
 namespace aerate {
 namespace {
@@ -31,7 +32,9 @@ PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVo
   }
   draft = leave_out_pools(task, std::move(draft));
   if (draft.holes.empty()) throw all_stays_full(request, kOrSpheres);
-  return planned(task, draft);
+  PlannedCellDrainage result = planned(task, draft);
+  describe_holes(result.plan.holes, request, task.places.front().showing());
+  return result;
 }
 
 }  // namespace aerate

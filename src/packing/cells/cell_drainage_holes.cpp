@@ -43,7 +43,8 @@ CellHolePlaces::CellHolePlaces(const DrainableModel& model, const CellVoids& cel
       surfaces_(surfaces),
       outward_(model.outward),
       ways_out_(hollows, limits, radius, surfaces, model.outward),
-      showing_(surfaces.model(), limits.roof.up, model.plate, request) {
+      showing_(surfaces.model(), limits.roof.up, model.plate, request),
+      worth_of_hiding_(request.worth_of_hiding) {
   const Vec3d up = limits.roof.up;
   directions_ = {directions_and_level_ones(-up), directions_and_level_ones(up)};
   // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
@@ -140,8 +141,8 @@ class CellHolePlaces::Ranking {
   }
 
   double cost_of(const CellWayOut& way) const {
-    return places_.ways_out_.sill_of(way, orientation_) + kShowingWeight * height_ * way.showing.value_or(0) +
-           kLengthWeight * way.length();
+    return places_.ways_out_.sill_of(way, orientation_) +
+           places_.worth_of_hiding_ * height_ * way.showing.value_or(0) + kLengthWeight * way.length();
   }
 
   CellHolePlaces& places_;

@@ -38,6 +38,8 @@ class CellHolePlaces {
   std::optional<CellHole> leading_to(Vec3d place, std::span<const std::uint32_t> voids,
                                      const Accept& accept) const;
 
+  const HoleShowing& showing() const { return showing_; }
+
  private:
   using Ways = std::vector<CellWayOut>;
   class Ranking;
@@ -50,6 +52,7 @@ class CellHolePlaces {
   kernels::WindingView outward_;
   WaysOut ways_out_;
   HoleShowing showing_;
+  double worth_of_hiding_;
   std::array<std::vector<Vec3d>, 2> directions_;                                 // by orientation
   std::map<std::tuple<std::size_t, std::uint32_t, std::uint32_t>, Ways> known_;  // orientation, void, node
 };
