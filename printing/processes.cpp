@@ -6,6 +6,7 @@ namespace aerate {
 namespace {
 
 constexpr LimitUnit kMillimetres{"mm", "mm", "MM"};
+constexpr LimitUnit kSquareMillimetres{"mm2", "mm2", "MM2"};
 constexpr LimitUnit kDegreesFromVertical{"degrees from the vertical", "deg", "DEG"};
 
 constexpr std::optional<double> kMoreThanZero;
@@ -32,6 +33,7 @@ constexpr LimitRow kRows[] = {
      "Diameter of the channels that join voids"},
     {Limit::escape_hole, LimitGroup::drainage, "escape-hole", "--hole-diameter", kMillimetres, kMoreThanZero,
      "Diameter of the escape holes, no less than that of channels"},
+    {Limit::cup, LimitGroup::printer, "cup", "", kSquareMillimetres, 0.0, ""},
 };
 static_assert(std::size(kRows) == kLimitCount);
 
@@ -84,7 +86,8 @@ std::span<const Process> processes() {
         {Limit::least_gap, {0.5, "Hubs: supported wall"}},
         {Limit::overhang, {71, "Formlabs: 19 degrees from the level"}},
         {Limit::channel, {3.5, "Formlabs: drain holes of at least 3.5 mm"}},
-        {Limit::escape_hole, {3.5, "Formlabs: at least 3.5 mm, two of them"}}}},
+        {Limit::escape_hole, {3.5, "Formlabs: at least 3.5 mm, two of them"}},
+        {Limit::cup, {100, own("guides give no figure; the air presses on this with 10 N at most")}}}},
       {"sls",
        "powder bed, plastic (SLS, MJF)",
        "PA12",

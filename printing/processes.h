@@ -21,13 +21,14 @@ enum class Limit {
   bridge,       // ...unless it is no wider than this
   channel,      // diameter of a channel that joins two voids
   escape_hole,  // diameter of a hole to the outside
+  cup,          // area that a layer may close in over what was printed below it, where parts are pulled off a film
 };
-inline constexpr std::size_t kLimitCount = 10;
+inline constexpr std::size_t kLimitCount = 11;
 
 // When a job is under a limit.
 enum class LimitGroup {
   packing,   // always; every process has these
-  printer,   // never: walls and gaps are held against it
+  printer,   // never: walls, gaps and cups are held against it
   ceilings,  // where the process or the user gives both of these
   drainage,  // where voids drain
 };

@@ -55,8 +55,24 @@ std::optional<Box3d> parse_box(std::string_view text) {
 
 }  // namespace
 
+BuildOption::BuildOption(CLI::App& command)
+    : option_(command
+                  .add_option("--build", build_,
+                              "Whether the part stands on its plate or hangs from it while it is printed, as in "
+                              "resin printers that cure through the bottom of the vat: then liquid runs towards "
+                              "--up, and what is closed in but for the layer being printed is sucked at")
+                  ->check(CLI::IsMember({name_of(Build::standing), name_of(Build::hanging)}))
+                  ->type_name("SIDE")
+                  ->capture_default_str()) {}
+
+Build BuildOption::build() const {
+  return build_ == name_of(Build::hanging) ? Build::hanging : Build::standing;
+}
+
 DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
-    : drain_option_(add_drain(command, drain_)), limits_(command, config, {LimitGroup::drainage}) {
+    : drain_option_(add_drain(command, drain_)),
+      limits_(command, config, {LimitGroup::drainage}),
+      build_(command) {
   command
       .add_option("--escape-hole", places_,
                   "A point of the surface where an escape hole is to open, x,y,z in mm; may be repeated "
@@ -87,6 +103,7 @@ void DrainageOptions::require_no_tubes() const {
   if (!places_.empty()) refuse("--escape-hole");
   if (!on_.empty()) refuse("--holes-on");
   if (!not_on_.empty()) refuse("--holes-not-on");
+  if (build_.is_given()) refuse("--build");
 }
 
 HoleSides DrainageOptions::sides(Vec3d up) const {
@@ -146,6 +163,7 @@ HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
   options.packing.process = with_tubes(choice, limits_.given());
   options.drainage = drainage_request(options.packing.process, escape_holes());
   options.drainage->sides = sides(choice.direction.up);
+  options.build = build_.build();
   return options;
 }
 

@@ -9,7 +9,19 @@
 
 namespace aerate::cli {
 
-// --drain, --no-drain, the limits of drainage, --escape-hole, --holes-on, --holes-not-on
+// --build
+class BuildOption {
+ public:
+  explicit BuildOption(CLI::App& command);
+  bool is_given() const { return option_->count() > 0; }
+  Build build() const;
+
+ private:
+  std::string build_ = name_of(Build::standing);
+  const CLI::Option* option_;
+};
+
+// --drain, --no-drain, the limits of drainage, --escape-hole, --holes-on, --holes-not-on, --build
 class DrainageOptions {
  public:
   DrainageOptions(CLI::App& command, const ConfigFile& config);
@@ -33,6 +45,7 @@ class DrainageOptions {
   const CLI::Option* drain_option_;
   LimitOptions limits_;
   std::vector<std::string> places_, on_, not_on_;
+  BuildOption build_;
 };
 
 }  // namespace aerate::cli

@@ -1,9 +1,15 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "cli/commands.h"
+#include "cli/drainage_options.h"
 #include "cli/model_options.h"
+#include "cli/numbers.h"
+#include "cli/process_options.h"
 #include "cli/run_reported.h"
+#include "core/error.h"
 #include "pipeline/inspect_model.h"
 
 namespace aerate::cli {
@@ -11,24 +17,55 @@ namespace {
 
 struct InspectCommand {
   InspectCommand(CLI::App& command, const ConfigFile& config_file)
-      : config(config_file), model(command), run_options(command) {
+      : config(config_file),
+        model(command),
+        process_option(add_process_option(command, process, "with --drainage")),
+        up(command, config_file),
+        build(command),
+        run_options(command) {
     command.add_flag("--self-intersections", self_intersections,
                      "Also look for triangles that intersect each other (slow for large models)");
+    command.add_flag("--drainage", drainage,
+                     "Also find out how it drains, whoever hollowed it: sealed cavities, holes, what stays, "
+                     "suction, the thinnest wall");
+    command
+        .add_option("--widest-hole", widest_hole,
+                    "With --drainage: what is wider belongs to the outside, mm (default twice the process's "
+                    "escape holes)")
+        ->check(number_between({}, kLongest, "mm"))
+        ->type_name("MM");
+  }
+
+  // Throws UsageError for options that say how it drains if that is not asked for.
+  std::optional<DrainageInquiry> inquiry() const {
+    if (drainage)
+      return DrainageInquiry{choose_process(process), up.direction(), build.build(), widest_hole};
+    if (process_option->count() > 0 || up.is_given() || build.is_given() || widest_hole)
+      throw UsageError("--process, --up, --build and --widest-hole are for --drainage", "add --drainage");
+    return std::nullopt;
   }
 
   void run() const {
     InspectOptions options;
+    options.drainage = inquiry();
     options.model = model.path;
     options.load = model.load();
     options.weld = model.weld;
     if (self_intersections) options.self_intersections = SelfIntersectionSearch::on;
-    run_reported(run_options, {{{"model", options.model}, {"configuration file", config.path()}}, {}},
-                 [&](Monitor& monitor) { return inspect_model(options, monitor); });
+    JobFiles files{{{"model", options.model}, {"configuration file", config.path()}}, {}};
+    if (drainage && is_process_file(process)) files.inputs.push_back({"process file", process});
+    run_reported(run_options, files, [&](Monitor& monitor) { return inspect_model(options, monitor); });
   }
 
   const ConfigFile& config;
   ModelOptions model;
+  std::string process = "sla";
+  const CLI::Option* process_option;
+  DirectionOption up;
+  BuildOption build;
   RunOptions run_options;
+  bool drainage = false;
+  std::optional<double> widest_hole;
   bool self_intersections = false;
 };
 

@@ -13,6 +13,23 @@ namespace aerate::cli {
 // Thrown while options are read for `--process list`: the processes are to be listed, and nothing else done.
 class ProcessListRequest : public CLI::Success {};
 
+// --up
+class DirectionOption {
+ public:
+  DirectionOption(CLI::App& command, const ConfigFile& config);
+  // The default if it was not given.
+  PrintDirection direction() const;
+  bool is_given() const { return option_->count() > 0; }
+
+ private:
+  const ConfigFile& config_;
+  std::string up_ = PrintDirection{}.name;
+  const CLI::Option* option_;
+};
+
+// --process, with what it is said to be for. `name` holds the default.
+const CLI::Option* add_process_option(CLI::App& command, std::string& name, const std::string& what_it_does);
+
 // --process, the limits of packing and of ceilings, --up
 class ProcessOptions {
  public:
@@ -25,12 +42,10 @@ class ProcessOptions {
   ProcessChoice choice() const;
 
  private:
-  const ConfigFile& config_;
   std::string process_ = processes().front().name;
   const CLI::Option* process_option_;
   LimitOptions limits_;
-  std::string up_ = PrintDirection{}.name;
-  const CLI::Option* up_option_;
+  DirectionOption direction_;
 };
 
 }  // namespace aerate::cli

@@ -171,9 +171,9 @@ Json json_of(const PrintPrediction& print) {
           {"time_direction", name_of(print.time)}};
 }
 
-Json json_of(const TrappedPools& pools) {
-  return {{"print_orientation_mm3", pools.upright},
-          {"upside_down_mm3", pools.upside_down},
+Json json_of(const TrappedPools& pools, Build build) {
+  return {{"print_orientation_mm3", as_printed(pools, build)},
+          {"upside_down_mm3", turned_over(pools, build)},
           {"after_both_mm3", pools.after_both},
           {"after_both_percent", pools.total > 0 ? 100 * pools.after_both / pools.total : 0}};
 }
@@ -190,7 +190,55 @@ const char* name_of(HolePurpose purpose) {
   return "";
 }
 
-Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
+Json json_of(const std::optional<PrintedCups>& cups) {
+  if (!cups) return nullptr;
+  Json json{{"limit_mm2", cups->limit.value},
+            {"limit_source", cups->limit.source},
+            {"over_limit", cups->over_limit},
+            {"widest", nullptr}};
+  if (cups->widest)
+    json["widest"] = {{"area_mm2", cups->widest->area},
+                      {"volume_mm3", cups->widest->volume},
+                      {"height_mm", cups->widest->height},
+                      {"place_mm", json_of(cups->widest->place)},
+                      {"bottom_mm", json_of(cups->widest->bottom)}};
+  return json;
+}
+
+Json json_of(const DrainageFindings& findings) {
+  Json json{{"verdict", findings.verdict},
+            {"drains", findings.air ? Json(findings.drains) : Json(nullptr)},
+            {"process", findings.inquiry.process.name},
+            {"build", name_of(findings.inquiry.build)},
+            {"up", findings.inquiry.direction.name},
+            {"widest_hole_mm", findings.widest_hole}};
+  if (!findings.air) return json;
+  const InspectedDrainage& air = *findings.air;
+  const bool hangs = findings.inquiry.build == Build::hanging;
+  json["spacing_mm"] = air.spacing;
+  json["sealed"] = {{"count", findings.sealed.count},
+                    {"volume_mm3", findings.sealed.volume},
+                    {"largest_mm3", findings.sealed.largest},
+                    {"largest_mm", findings.sealed.count > 0 ? json_of(findings.sealed.place) : Json(nullptr)}};
+  json["hollows"] = Json::array();
+  for (const FoundHollow& hollow : air.found.hollows)
+    json["hollows"].push_back({{"volume_mm3", hollow.volume},
+                               {"place_mm", json_of(hollow.place)},
+                               {"sealed", hollow.is_sealed}});
+  json["holes"] = Json::array();
+  for (const FoundHole& hole : air.found.holes)
+    json["holes"].push_back(
+        {{"place_mm", json_of(hole.place)}, {"width_mm", hole.width}, {"hollow", hole.hollow}});
+  json["pools"] = json_of(air.pools, findings.inquiry.build);
+  json["recesses"] = {{"print_orientation_mm3", hangs ? air.recesses_upside_down : air.recesses_upright},
+                      {"upside_down_mm3", hangs ? air.recesses_upright : air.recesses_upside_down}};
+  json["cups"] = json_of(findings.cups);
+  json["thinnest_wall_mm"] = air.found.wall ? Json(air.found.wall->thickness) : Json(nullptr);
+  json["thinnest_wall_place_mm"] = air.found.wall ? json_of(air.found.wall->place) : Json(nullptr);
+  return json;
+}
+
+Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured, Build build) {
   Json holes = Json::array();
   for (const EscapeHole& hole : drainage.plan.holes) {
     const Vec3d along = hole.tube.end - hole.tube.start;
@@ -210,7 +258,8 @@ Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured) {
           {"cut_triangles", measured.cut_triangles},
           {"sealed_cavities", measured.sealed_cavities},
           {"cavities_of_model", measured.cavities_of_model},
-          {"pools", json_of(drainage.plan.pools)},
+          {"pools", json_of(drainage.plan.pools, build)},
+          {"build", name_of(build)},
           {"dropped_voids",
            {{"count", drainage.dropped.count()},
             {"volume_mm3", drainage.dropped.volume},
@@ -297,7 +346,9 @@ std::string to_json(const HollowReport& report) {
   json["measured"] = json_of(output.clearances);
   json["keep_solid"] = json_of(report.kept);
   json["ceilings"] = json_of(output.ceilings, output.roof_count, report.limits);
-  json["drainage"] = report.drainage ? json_of(*report.drainage, *output.drainage) : Json(nullptr);
+  json["drainage"] =
+      report.drainage ? json_of(*report.drainage, *output.drainage, report.build) : Json(nullptr);
+  json["cups"] = json_of(report.cups);
   json["volume"] = volume_of(report);
   json["modifiers"] = modifiers_of(report);
   json["centre_of_mass"] = {
@@ -343,6 +394,7 @@ std::string to_json(const InspectReport& report) {
                       {"closed", shell.closed}});
   json["shells"] = shells;
   json["use"] = report.use;
+  json["drainage"] = report.drainage ? json_of(*report.drainage) : Json(nullptr);
   if (report.self_intersections) {
     Json places = Json::array();
     for (const Vec3d place : report.self_intersections->places) places.push_back(json_of(place));

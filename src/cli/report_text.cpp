@@ -144,6 +144,29 @@ void add_balance(Lines& lines, const HollowReport& report) {
   }
 }
 
+void add_pools(Lines& lines, const char* label, const TrappedPools& pools, Build build) {
+  lines.add(label, "{:.1f} mm3 stay as printed{}, {:.1f} {}, {:.1f} ({:.2f} % of the voids) after both",
+            as_printed(pools, build), build == Build::hanging ? " (hanging)" : "", turned_over(pools, build),
+            build == Build::hanging ? "standing" : "upside down", pools.after_both,
+            pools.total > 0 ? 100 * pools.after_both / pools.total : 0);
+}
+
+// What happens to what a layer closes in depends on how the part hangs or stands.
+void add_cups(Lines& lines, const PrintedCups& cups) {
+  if (!cups.widest) {
+    lines.add("cups", "none: no layer closes anything in");
+    return;
+  }
+  const AirCup& cup = *cups.widest;
+  lines.add("cups", "{:.1f} mm2 at most (limit {:g}), {:.2f} mm from the start of the print near {} mm: {}",
+            cup.area, cups.limit.value, cup.height, point(cup.place),
+            cups.build == Build::hanging
+                ? "suction where the layer is pulled off"
+                : "liquid stands in it; suction only if the part hangs (--build hanging)");
+  lines.add("", "{:.1f} mm3 are closed in, down to {} mm; {} over the limit", cup.volume, point(cup.bottom),
+            count_of(cups.over_limit, "cup", "cups"));
+}
+
 void add_drainage(Lines& lines, const HollowReport& report) {
   if (!report.drainage) return;
   const DrainedVoids& drainage = *report.drainage;
@@ -162,9 +185,7 @@ void add_drainage(Lines& lines, const HollowReport& report) {
   if (for_pools > 0)
     lines.add("", "{} of them for pools that would stay, beyond the two of each group of voids ({})",
               for_pools, count_of(plan.network_count, "group", "groups"));
-  const TrappedPools& pools = plan.pools;
-  lines.add("", "{:.1f} mm3 stay as printed, {:.1f} upside down, {:.1f} ({:.2f} % of the voids) after both",
-            pools.upright, pools.upside_down, pools.after_both, 100 * pools.after_both / pools.total);
+  add_pools(lines, "", plan.pools, report.build);
   if (drainage.dropped.count() > 0)
     lines.add("", "{} that cannot be drained not made ({:.1f} mm3)",
               count_of(drainage.dropped.count(), "void", "voids"), drainage.dropped.volume);
@@ -306,6 +327,39 @@ void add_some(Lines& lines, const std::vector<T>& all, const AddLine& add_line) 
   if (all.size() > kMost) lines.add("", "and {} more", all.size() - kMost);
 }
 
+// How a model drains that is as it is.
+void add_findings(Lines& lines, const DrainageFindings& findings) {
+  lines.add("drainage", "{}", findings.verdict);
+  if (!findings.air) return;
+  const InspectedDrainage& air = *findings.air;
+  const Build build = findings.inquiry.build;
+  lines.add("", "for {}, {}, up is {} ({}); found on columns of {:.2f} mm", findings.inquiry.process.name,
+            name_of(build), findings.inquiry.direction.name, findings.inquiry.direction.origin, air.spacing);
+  if (findings.sealed.count > 0)
+    lines.add("sealed", "{}, {:.1f} mm3; the largest {:.1f} mm3 near {} mm",
+              count_of(findings.sealed.count, "cavity", "cavities"), findings.sealed.volume,
+              findings.sealed.largest, point(findings.sealed.place));
+  std::vector<FoundHollow> open;
+  std::ranges::copy_if(air.found.hollows, std::back_inserter(open),
+                       [](const FoundHollow& hollow) { return !hollow.is_sealed; });
+  add_some(lines, open, [&](const FoundHollow& hollow, bool is_first) {
+    lines.add(is_first ? "hollows" : "", "{:.1f} mm3 about {} mm", hollow.volume, point(hollow.place));
+  });
+  add_some(lines, air.found.holes, [&](const FoundHole& hole, bool is_first) {
+    lines.add(is_first ? "holes" : "", "about {:.1f} mm wide near {} mm", hole.width, point(hole.place));
+  });
+  if (air.found.holes.empty()) lines.add("holes", "none narrower than {:g} mm", findings.widest_hole);
+  if (air.pools.total > 0) add_pools(lines, "pools", air.pools, build);
+  const bool hangs = build == Build::hanging;
+  lines.add("recesses", "{:.1f} mm3 stay as printed outside of hollows, {:.1f} turned over",
+            hangs ? air.recesses_upside_down : air.recesses_upright,
+            hangs ? air.recesses_upright : air.recesses_upside_down);
+  if (findings.cups) add_cups(lines, *findings.cups);
+  if (air.found.wall)
+    lines.add("wall", "{:.2f} mm between a hollow and the outside where it is thinnest, near {} mm",
+              air.found.wall->thickness, point(air.found.wall->place));
+}
+
 }  // namespace
 
 std::string to_text(const HollowReport& report) {
@@ -327,6 +381,7 @@ std::string to_text(const HollowReport& report) {
       fmt::format("{} of {}", grouped(output.roof_count), count_of(output.void_count, "void", "voids")),
       report.limits.roof, report.tolerance_used, report.process);
   add_drainage(lines, report);
+  if (report.cups) add_cups(lines, *report.cups);
   if (!report.modifiers) add_balance(lines, report);
   add_material(lines, report);
   lines.add("output", "{}: {} ({} outside, {}), {}", report.output_path.filename().string(),
@@ -407,6 +462,7 @@ std::string to_text(const InspectReport& report) {
               count_of(report.self_intersections->pair_count, "pair of triangles", "pairs of triangles"));
     for (const Vec3d place : report.self_intersections->places) lines.add("", "near {} mm", point(place));
   }
+  if (report.drainage) add_findings(lines, *report.drainage);
   lines.add("use", "{}", report.use);
   add_stages(lines, report.stages);
   return lines.take();

@@ -8,6 +8,7 @@
 #include "pipeline/balance.h"
 #include "pipeline/best_form.h"
 #include "pipeline/job_log.h"
+#include "pipeline/own_cavities.h"
 #include "pipeline/solid_file.h"
 
 namespace aerate {
@@ -76,6 +77,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.output_bytes = written.bytes;
   report.output = written.facts;
   report.drainage = hollowed.drainage;
+  report.build = options.build;
   report.volume_estimated = model.inspection.parts_overlap();
   report.balance = written.balance;
   report.target = hollowed.target;
@@ -83,6 +85,20 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.print = print;
   report.material = options.material;
   return report;
+}
+
+// What the layers of the result close in while they are printed; a channel is several columns wide.
+std::optional<PrintedCups> cups_of(const HollowedModel& hollowed, const HollowOptions& options,
+                                   Monitor& monitor) {
+  constexpr double kColumnsPerChannel = 8;
+  const Process& process = hollowed.request.process.process;
+  if (!hollowed.drainage || !process.limits.contains(Limit::cup)) return std::nullopt;
+  monitor.stage("cups");
+  const double spacing = 2 * hollowed.drainage->request.channel_radius / kColumnsPerChannel;
+  auto cups = printed_cups(cups_of(hollowed.carved.solid.mesh, hollowed.packing.limits.roof.up, spacing),
+                           process, options.build);
+  warn_of_suction(*cups, process, monitor);
+  return cups;
 }
 
 }  // namespace
@@ -101,6 +117,9 @@ HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
   const HollowedForm best = carve_best_form(forms, log);
   const WrittenFile written = write_to(pending, best.hollowed, *best.options, log);
   HollowReport report = report_of(best.hollowed, written, *best.options, best.print);
+  if (!best.options->modifiers)
+    warn_of_cavities(best.hollowed.model.inspection, best.hollowed.request.process.process, log);
+  report.cups = cups_of(best.hollowed, *best.options, log);
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

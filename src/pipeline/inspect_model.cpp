@@ -16,6 +16,10 @@ InspectReport inspect_model(const InspectOptions& options, Monitor& monitor) {
     log.stage("self-intersections");
     report.self_intersections = find_self_intersections(model.mesh);
   }
+  if (options.drainage) {
+    log.stage("drainage");
+    report.drainage = inspect_drainage_of(model, *options.drainage, log);
+  }
   report.use = use_of(std::move(model), {.mode = SurfaceMode::automatic, .weld = options.weld});
   report.stages = log.finish();
   report.notices = log.notices();

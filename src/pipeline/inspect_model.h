@@ -5,6 +5,7 @@
 
 #include "core/monitor.h"
 #include "files/load.h"
+#include "pipeline/drainage_verdict.h"
 #include "pipeline/report.h"
 
 namespace aerate {
@@ -16,9 +17,11 @@ struct InspectOptions {
   LoadOptions load;
   std::optional<double> weld;  // see HollowOptions
   SelfIntersectionSearch self_intersections = SelfIntersectionSearch::off;
+  std::optional<DrainageInquiry> drainage;  // how it drains is asked, too
 };
 
-// Loads a model and looks at it; nothing about it is an error but what load_model throws.
+// Loads a model and looks at it; nothing about it is an error but what load_model throws. Throws UsageError for an inquiry
+// into drainage under a process that needs none.
 InspectReport inspect_model(const InspectOptions& options, Monitor& monitor);
 
 }  // namespace aerate

@@ -118,6 +118,7 @@ struct HollowOptions {
   std::optional<ModifierOptions> modifiers;
   // If given, voids are joined by channels and opened by escape holes; else each is sealed.
   std::optional<DrainageRequest> drainage;
+  Build build = Build::standing;
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.
   double tolerance = 0.05;

@@ -60,6 +60,10 @@ bool is_default(const ProcessChoice& choice, Limit limit) {
   return choice.limits.at(limit).origin == default_of(choice.process);
 }
 
+const char* name_of(Build build) {
+  return build == Build::hanging ? "hanging" : "standing";
+}
+
 bool is_process_file(const std::string& name_or_file) {
   return name_or_file.ends_with(".json") || name_or_file.find('/') != std::string::npos;
 }

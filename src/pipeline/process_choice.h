@@ -13,6 +13,11 @@
 
 namespace aerate {
 
+// Whether the part stands on its plate while it is printed, or hangs from it (printers that cure each layer through a film
+// below the part). It grows along `up` either way; of a hanging part gravity points along `up`.
+enum class Build { standing, hanging };
+const char* name_of(Build build);
+
 // Which way is up while a model is printed.
 struct PrintDirection {
   Vec3d up{0, 0, 1};

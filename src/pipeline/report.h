@@ -12,6 +12,7 @@
 #include "mesh/inspect.h"
 #include "pipeline/balance.h"
 #include "pipeline/drain.h"
+#include "pipeline/drainage_verdict.h"
 #include "pipeline/input_facts.h"
 #include "pipeline/options.h"
 #include "pipeline/print_prediction.h"
@@ -66,6 +67,8 @@ struct HollowReport {
   std::optional<DrainedVoids> drainage;
   std::optional<KeptFacts> kept;      // absent without such regions
   std::optional<TargetFacts> target;  // absent where none was asked for
+  Build build = Build::standing;
+  std::optional<PrintedCups> cups;  // of voids that drain, in a process that limits them
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
   bool volume_estimated = false;
 
@@ -123,6 +126,7 @@ struct InspectReport {
   InputFacts input;
   std::optional<SelfIntersections> self_intersections;
   std::string use;  // what hollowing will make of it
+  std::optional<DrainageFindings> drainage;
   std::vector<StageCost> stages;
   std::vector<std::string> notices;
 };
