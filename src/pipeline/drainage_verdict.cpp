@@ -10,6 +10,9 @@
 namespace aerate {
 namespace {
 
+// A model drains of which no more stays than this: twice what `hollow` aims at, since pools are found on columns.
+constexpr double kMayStay = 2 * kPoolsAimedAt;
+
 // Holes twice as wide as those that a process asks for are seen as holes.
 constexpr double kWidestHoles = 2;
 
@@ -57,13 +60,13 @@ std::string what_pools_say(const DrainageFindings& findings) {
   const InspectedDrainage& air = *findings.air;
   const Build build = findings.inquiry.build;
   const bool is_hollow = air.pools.total > 0;
-  if (share_of(air.pools.after_both, air.pools) > kPoolsAimedAt)
+  if (share_of(air.pools.after_both, air.pools) > kMayStay)
     return fmt::format("does not drain: {:.1f} mm3 ({:.1f} % of its hollows) stay as printed and turned over",
                        air.pools.after_both, 100 * share_of(air.pools.after_both, air.pools));
   if (!is_hollow) return "has no hollow that could keep anything";
   const double printed = as_printed(air.pools, build);
   std::string verdict = "drains";
-  if (share_of(printed, air.pools) > kPoolsAimedAt)
+  if (share_of(printed, air.pools) > kMayStay)
     verdict = fmt::format("drains once it is turned over: {:.1f} mm3 ({:.1f} % of its hollows) stay as printed",
                           printed, 100 * share_of(printed, air.pools));
   return verdict;
@@ -79,7 +82,7 @@ std::size_t count_with_one_hole(const FoundHollows& found) {
 void judge(DrainageFindings& findings) {
   const InspectedDrainage& air = *findings.air;
   const OwnCavities& sealed = findings.sealed;
-  const bool keeps_little = share_of(air.pools.after_both, air.pools) <= kPoolsAimedAt;
+  const bool keeps_little = share_of(air.pools.after_both, air.pools) <= kMayStay;
   findings.drains = sealed.count == 0 && keeps_little;
   if (sealed.count > 0) {
     findings.verdict = fmt::format("does not drain: {} sealed {} of {:.1f} mm3", sealed.count,
@@ -135,9 +138,7 @@ DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageIn
     return findings;
   }
   findings.air = inspect_drainage(model.mesh,
-                                  {.up = inquiry.direction.up,
-                                   .widest_hole = findings.widest_hole,
-                                   .first = inquiry.build == Build::hanging ? kUpsideDown : kUpright},
+                                  {.up = inquiry.direction.up, .widest_hole = findings.widest_hole},
                                   monitor);
   findings.sealed = sealed_in(model, findings.air->found);
   findings.cups = printed_cups(findings.air->cups, inquiry.process, inquiry.build);

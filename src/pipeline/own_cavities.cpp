@@ -5,9 +5,10 @@
 namespace aerate {
 
 OwnCavities cavities_of(const Inspection& inspection) {
+  constexpr double kLeast = 0.01;  // mm3
   OwnCavities cavities;
   for (const Shell& shell : inspection.shells) {
-    if (!(shell.volume < 0)) continue;
+    if (!(shell.volume < -kLeast)) continue;
     ++cavities.count;
     cavities.volume -= shell.volume;
     if (-shell.volume <= cavities.largest) continue;
@@ -23,10 +24,10 @@ void warn_of_cavities(const Inspection& inspection, const Process& process, Moni
   if (cavities.count == 0) return;
   const bool is_one = cavities.count == 1;
   monitor.notice(fmt::format(
-      "the model itself has {} sealed {} ({:.1f} mm3, {} near ({:.2f}, {:.2f}, {:.2f}) mm), which stay{} "
+      "the model itself has {} sealed {} ({:.1f} mm3, {}near ({:.2f}, {:.2f}, {:.2f}) mm), which stay{} "
       "sealed: a print by {} keeps its liquid or powder in {}; open {} in a mesh editor, or take {} inner "
       "{} away, so that voids are packed there instead",
-      cavities.count, is_one ? "cavity" : "cavities", cavities.volume, is_one ? "" : "the largest",
+      cavities.count, is_one ? "cavity" : "cavities", cavities.volume, is_one ? "" : "the largest ",
       cavities.place.x, cavities.place.y, cavities.place.z, is_one ? "s" : "", process.name,
       is_one ? "it" : "them", is_one ? "it" : "them", is_one ? "its" : "their",
       is_one ? "surface" : "surfaces"));

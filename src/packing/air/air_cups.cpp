@@ -6,7 +6,7 @@
 
 #include "core/disjoint_sets.h"
 #include "kernels/constants.h"
-#include "packing/air/air_hollows.h"
+#include "packing/air/air_events.h"
 
 namespace aerate {
 namespace {
@@ -126,7 +126,7 @@ class Growth {
 }  // namespace
 
 std::vector<AirCup> cups_of(const AirColumns& columns) {
-  const std::vector<AirEvent> events = rising_events(columns, kUpright);
+  const std::vector<AirEvent> events = rising_events(columns);
   double lowest = kInfinity, highest = -kInfinity;
   for (const AirSpan& span : columns.spans) {
     for (const double height : {span.floor, span.ceiling}) {

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include "kernels/constants.h"
+#include "kernels/point_triangle.h"
 
 namespace aerate {
 namespace {
@@ -17,13 +18,21 @@ void measure(AirNodes& nodes, const AirColumns& columns, const SurfaceIndex& sur
   tbb::parallel_for(std::size_t{0}, column_count, [&](std::size_t column) {
     for (std::uint32_t i = columns.first[column]; i < columns.first[column + 1]; ++i) {
       const AirSpan& span = columns.spans[i];
+      std::uint32_t near = kNone;  // facet that the node below is nearest to
       for (std::uint32_t layer = 0; layer < nodes.count_z; ++layer) {
         const double height = nodes.height(layer, columns.spacing);
         if (height <= span.floor || height >= span.ceiling) continue;
         const std::size_t node = column * nodes.count_z + layer;
         nodes.span[node] = i;
-        nodes.clearance[node] =
-            static_cast<float>(std::sqrt(surface.bvh().nearest(columns.at(i, height), limit).distance_squared));
+        const Vec3d p = columns.at(i, height);
+        kernels::NearestFacet nearest{limit, kNone};
+        if (near != kNone) {
+          const double known = kernels::distance_squared_to_facet(p, surface.bvh().facets[near]);
+          if (known < limit) nearest = {known, near};
+        }
+        nearest = surface.bvh().nearer_than(p, nearest);
+        near = nearest.facet;
+        nodes.clearance[node] = static_cast<float>(std::sqrt(nearest.distance_squared));
       }
     }
   });

@@ -28,17 +28,12 @@ struct AirPart {
 // Both floods.
 struct AirFloods {
   AirFlood upright, upside_down;
-
-  const AirFlood& in(std::size_t orientation) const {
-    return orientation == kUpright ? upright : upside_down;
-  }
 };
 
 // Volumes that stay in parts of spans (one for each span; empty parts count for nothing), all of them full at first.
-// `after_both`: what stays in the first orientation, turned over; an upper bound, since liquid that can run several ways is
-// taken to part so that the most stays. `total` is the volume of all parts.
-TrappedPools pools_in(const AirColumns& columns, const AirFloods& floods, const std::vector<AirPart>& parts,
-                      std::size_t first);
+// `after_both` is an upper bound: where liquid can run several ways it is taken to part so that the most stays. `total` is
+// the volume of all parts.
+TrappedPools pools_in(const AirColumns& columns, const AirFloods& floods, const std::vector<AirPart>& parts);
 
 // What liquid stays of a part, upright or upside down, mm3.
 double left_in(const AirColumns& columns, const AirFlood& flood, std::size_t orientation, std::uint32_t span,

@@ -64,8 +64,11 @@ std::vector<Pocket> pockets_of(const AirColumns& columns, const AirNodes& nodes,
   return pockets;
 }
 
-bool is_hollow(const Pocket& pocket, double spacing) {
+bool is_hollow(const Pocket& pocket, bool is_sealed, double spacing, double widest_hole) {
   if (pocket.nodes.size() < kLeastNodes || pocket.widest < 0.75 * spacing) return false;
+  // It opens where the lattice cannot follow: by a crack, unless much is behind it.
+  const double least_behind_crack = widest_hole * widest_hole * widest_hole / (spacing * spacing * spacing);
+  if (pocket.contacts == 0 && !is_sealed) return static_cast<double>(pocket.nodes.size()) > least_behind_crack;
   if (pocket.widest >= kWiderInside * pocket.widest_at_opening) return true;
   // In spacings.
   const auto area = static_cast<double>(pocket.contacts);
@@ -73,10 +76,12 @@ bool is_hollow(const Pocket& pocket, double spacing) {
 }
 
 // The hollows' pockets, the largest first.
-std::vector<std::uint32_t> hollow_pockets(const std::vector<Pocket>& pockets, double spacing) {
+std::vector<std::uint32_t> hollow_pockets(const std::vector<Pocket>& pockets, const AirNodes& nodes,
+                                          const AirFlood& drained, double spacing, double widest_hole) {
   std::vector<std::uint32_t> hollow;
   for (std::uint32_t i = 0; i < pockets.size(); ++i) {
-    if (is_hollow(pockets[i], spacing)) hollow.push_back(i);
+    const bool is_sealed = drained.height[nodes.span[pockets[i].nodes.front()]] == kInfinity;
+    if (is_hollow(pockets[i], is_sealed, spacing, widest_hole)) hollow.push_back(i);
   }
   std::stable_sort(hollow.begin(), hollow.end(), [&](std::uint32_t a, std::uint32_t b) {
     return pockets[a].nodes.size() > pockets[b].nodes.size();
@@ -163,12 +168,13 @@ class HoleFinder {
     const Vec3d axis = normalised(outwards);
     const Vec3d aside = std::abs(axis.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
     const Vec3d u = normalised(cross(axis, aside)), v = cross(axis, u);
+    const Vec3d node = place;
     double best = clearance_at(place);
     for (double step = columns_.spacing / 2; step > columns_.spacing / 40;) {
       bool is_better = false;
       for (const Vec3d way : {u, -u, v, -v}) {
         const double clearance = clearance_at(place + way * step);
-        if (clearance <= best) continue;
+        if (clearance <= best || length(place + way * step - node) > columns_.spacing) continue;
         best = clearance;
         place = place + way * step;
         is_better = true;
@@ -302,11 +308,20 @@ class WallFinder {
   TubeClearance rays_;
 };
 
+// As far from a hole as one and a half of its widths its rim may be near, however it lies.
+bool is_at_hole(Vec3d p, const std::vector<FoundHole>& holes) {
+  return std::ranges::any_of(
+      holes, [&](const FoundHole& hole) { return length(p - hole.place) < 1.5 * hole.width; });
+}
+
 std::optional<ThinWall> thinnest_wall(const WallFinder& finder, const HoleFinder& places,
+                                      const std::vector<FoundHole>& holes,
                                       const std::vector<std::size_t>& at_walls) {
   std::vector<std::optional<ThinWall>> walls(at_walls.size());
-  tbb::parallel_for(std::size_t{0}, at_walls.size(),
-                    [&](std::size_t i) { walls[i] = finder.beyond(places.place_of(at_walls[i])); });
+  tbb::parallel_for(std::size_t{0}, at_walls.size(), [&](std::size_t i) {
+    const Vec3d place = places.place_of(at_walls[i]);
+    if (!is_at_hole(place, holes)) walls[i] = finder.beyond(place);
+  });
   std::optional<ThinWall> thinnest;
   for (const auto& wall : walls) {
     if (wall && (!thinnest || wall->thickness < thinnest->thickness)) thinnest = wall;
@@ -330,10 +345,10 @@ std::vector<std::size_t> nodes_at_walls(const Pocket& pocket, const AirNodes& no
 }  // namespace
 
 FoundHollows find_hollows(const AirColumns& columns, const AirNodes& nodes, const SurfaceIndex& surface,
-                          const AirFlood& drained) {
+                          const AirFlood& drained, double widest_hole) {
   std::vector<std::uint32_t> pocket_of;
   const std::vector<Pocket> pockets = pockets_of(columns, nodes, pocket_of);
-  const std::vector<std::uint32_t> hollow_of = hollow_pockets(pockets, columns.spacing);
+  const std::vector<std::uint32_t> hollow_of = hollow_pockets(pockets, nodes, drained, columns.spacing, widest_hole);
   std::vector<std::uint32_t> hollow_of_pocket(pockets.size(), kNone);
   for (std::uint32_t i = 0; i < hollow_of.size(); ++i) hollow_of_pocket[hollow_of[i]] = i;
   HollowSpans spans = SpanSorter(columns, nodes, pockets, pocket_of, hollow_of_pocket).take();
@@ -347,7 +362,7 @@ FoundHollows find_hollows(const AirColumns& columns, const AirNodes& nodes, cons
     found.hollows.push_back({0, finder.place_of(pocket.deepest), is_sealed});
     const std::vector<FoundHole> holes = finder.holes_of(pocket, i);
     found.holes.insert(found.holes.end(), holes.begin(), holes.end());
-    const auto wall = thinnest_wall(walls, finder, nodes_at_walls(pocket, nodes, columns.spacing));
+    const auto wall = thinnest_wall(walls, finder, holes, nodes_at_walls(pocket, nodes, columns.spacing));
     if (wall && (!found.wall || wall->thickness < found.wall->thickness)) found.wall = wall;
   }
   for (std::size_t i = 0; i < spans.parts.size(); ++i) {

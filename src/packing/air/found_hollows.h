@@ -36,11 +36,12 @@ struct FoundHollows {
   std::vector<FoundHollow> hollows;  // the largest first
   std::vector<FoundHole> holes;      // by hollow; the widest first
   std::vector<AirPart> parts;        // by span: what of it belongs to a hollow
-  std::optional<ThinWall> wall;      // the thinnest between a hollow and the outside
+  // The thinnest between a hollow and the outside, away from holes, whose rims are as thin as can be.
+  std::optional<ThinWall> wall;
 };
 
-// `drained`: the flood of either orientation.
+// `drained`: the flood of either orientation. `widest_hole`: of the ball's width, mm.
 FoundHollows find_hollows(const AirColumns& columns, const AirNodes& nodes, const SurfaceIndex& surface,
-                          const AirFlood& drained);
+                          const AirFlood& drained, double widest_hole);
 
 }  // namespace aerate

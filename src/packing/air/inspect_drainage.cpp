@@ -81,10 +81,10 @@ InspectedDrainage inspect_drainage(const Mesh& model, const DrainageQuestion& qu
   monitor.check_interrupted();
   const AirNodes nodes = air_nodes(columns, surface, radius);
   monitor.check_interrupted();
-  result.found = find_hollows(columns, nodes, surface, floods.upright);
+  result.found = find_hollows(columns, nodes, surface, floods.upright, question.widest_hole);
   monitor.check_interrupted();
   result.pools =
-      pools_in(columns, floods, parts_that_open(columns, floods.upright, result.found), question.first);
+      pools_in(columns, floods, parts_that_open(columns, floods.upright, result.found));
   result.recesses_upright = left_in_recesses(columns, floods.upright, kUpright, result.found.parts);
   result.recesses_upside_down = left_in_recesses(columns, floods.upside_down, kUpsideDown, result.found.parts);
   result.cups = cups_of(columns);

@@ -17,8 +17,6 @@ namespace aerate {
 struct DrainageQuestion {
   Vec3d up{0, 0, 1};       // the way in which the print grows
   double widest_hole = 7;  // what is wider belongs to the outside, mm
-  // How gravity acts at first; then the model is turned over. `kUpright`: against `up`.
-  std::size_t first = kUpright;
 };
 
 struct InspectedDrainage {
