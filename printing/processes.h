@@ -21,7 +21,7 @@ enum class Limit {
   bridge,       // ...unless it is no wider than this
   channel,      // diameter of a channel that joins two voids
   escape_hole,  // diameter of a hole to the outside
-  cup,          // area that a layer may close in over what was printed below it, where parts are pulled off a film
+  cup,  // area that a layer may close in over what was printed below it, where parts are pulled off a film
 };
 inline constexpr std::size_t kLimitCount = 11;
 

@@ -56,14 +56,15 @@ std::optional<Box3d> parse_box(std::string_view text) {
 }  // namespace
 
 BuildOption::BuildOption(CLI::App& command)
-    : option_(command
-                  .add_option("--build", build_,
-                              "Whether the part stands on its plate or hangs from it while it is printed, as in "
-                              "resin printers that cure through the bottom of the vat: then liquid runs towards "
-                              "--up, and what is closed in but for the layer being printed is sucked at")
-                  ->check(CLI::IsMember({name_of(Build::standing), name_of(Build::hanging)}))
-                  ->type_name("SIDE")
-                  ->capture_default_str()) {}
+    : option_(
+          command
+              .add_option("--build", build_,
+                          "Whether the part stands on its plate or hangs from it while it is printed, as in "
+                          "resin printers that cure through the bottom of the vat: then liquid runs towards "
+                          "--up, and what is closed in but for the layer being printed is sucked at")
+              ->check(CLI::IsMember({name_of(Build::standing), name_of(Build::hanging)}))
+              ->type_name("SIDE")
+              ->capture_default_str()) {}
 
 Build BuildOption::build() const {
   return build_ == name_of(Build::hanging) ? Build::hanging : Build::standing;

@@ -38,8 +38,7 @@ struct InspectCommand {
 
   // Throws UsageError for options that say how it drains if that is not asked for.
   std::optional<DrainageInquiry> inquiry() const {
-    if (drainage)
-      return DrainageInquiry{choose_process(process), up.direction(), build.build(), widest_hole};
+    if (drainage) return DrainageInquiry{choose_process(process), up.direction(), build.build(), widest_hole};
     if (process_option->count() > 0 || up.is_given() || build.is_given() || widest_hole)
       throw UsageError("--process, --up, --build and --widest-hole are for --drainage", "add --drainage");
     return std::nullopt;

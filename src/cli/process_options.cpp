@@ -32,9 +32,10 @@ const CLI::Option* add_process_option(CLI::App& command, std::string& name, cons
     return {};
   };
   return command
-      .add_option("--process", name,
-                  fmt::format("What prints it: {}, or a file of your own (.json); {}; 'list' names every figure",
-                              process_names(), what_it_does))
+      .add_option(
+          "--process", name,
+          fmt::format("What prints it: {}, or a file of your own (.json); {}; 'list' names every figure",
+                      process_names(), what_it_does))
       ->check(CLI::Validator(list_if_asked, ""))
       ->type_name("NAME")
       ->capture_default_str();

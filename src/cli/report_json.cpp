@@ -216,15 +216,15 @@ Json json_of(const DrainageFindings& findings) {
   const InspectedDrainage& air = *findings.air;
   const bool hangs = findings.inquiry.build == Build::hanging;
   json["spacing_mm"] = air.spacing;
-  json["sealed"] = {{"count", findings.sealed.count},
-                    {"volume_mm3", findings.sealed.volume},
-                    {"largest_mm3", findings.sealed.largest},
-                    {"largest_mm", findings.sealed.count > 0 ? json_of(findings.sealed.place) : Json(nullptr)}};
+  json["sealed"] = {
+      {"count", findings.sealed.count},
+      {"volume_mm3", findings.sealed.volume},
+      {"largest_mm3", findings.sealed.largest},
+      {"largest_mm", findings.sealed.count > 0 ? json_of(findings.sealed.place) : Json(nullptr)}};
   json["hollows"] = Json::array();
   for (const FoundHollow& hollow : air.found.hollows)
-    json["hollows"].push_back({{"volume_mm3", hollow.volume},
-                               {"place_mm", json_of(hollow.place)},
-                               {"sealed", hollow.is_sealed}});
+    json["hollows"].push_back(
+        {{"volume_mm3", hollow.volume}, {"place_mm", json_of(hollow.place)}, {"sealed", hollow.is_sealed}});
   json["holes"] = Json::array();
   for (const FoundHole& hole : air.found.holes)
     json["holes"].push_back(

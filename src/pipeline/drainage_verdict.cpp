@@ -67,8 +67,9 @@ std::string what_pools_say(const DrainageFindings& findings) {
   const double printed = as_printed(air.pools, build);
   std::string verdict = "drains";
   if (share_of(printed, air.pools) > kMayStay)
-    verdict = fmt::format("drains once it is turned over: {:.1f} mm3 ({:.1f} % of its hollows) stay as printed",
-                          printed, 100 * share_of(printed, air.pools));
+    verdict =
+        fmt::format("drains once it is turned over: {:.1f} mm3 ({:.1f} % of its hollows) stay as printed",
+                    printed, 100 * share_of(printed, air.pools));
   return verdict;
 }
 
@@ -93,9 +94,10 @@ void judge(DrainageFindings& findings) {
   }
   if (const std::size_t one = count_with_one_hole(air.found); one > 0 && findings.drains)
     findings.verdict += one == 1 ? "; one hollow has a single hole, by which air has to get in as well"
-                                 : fmt::format("; {} hollows have a single hole each, by which air has to "
-                                               "get in as well",
-                                               one);
+                                 : fmt::format(
+                                       "; {} hollows have a single hole each, by which air has to "
+                                       "get in as well",
+                                       one);
   findings.verdict += what_suction_says(findings);
 }
 
@@ -122,7 +124,8 @@ void warn_of_suction(const PrintedCups& cups, const Process& process, Monitor& m
       point(cup.bottom)));
 }
 
-DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageInquiry& inquiry, Monitor& monitor) {
+DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageInquiry& inquiry,
+                                     Monitor& monitor) {
   DrainageFindings findings{.inquiry = inquiry,
                             .widest_hole = widest_hole_of(inquiry),
                             .air = std::nullopt,
@@ -138,8 +141,7 @@ DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageIn
     return findings;
   }
   findings.air = inspect_drainage(model.mesh,
-                                  {.up = inquiry.direction.up, .widest_hole = findings.widest_hole},
-                                  monitor);
+                                  {.up = inquiry.direction.up, .widest_hole = findings.widest_hole}, monitor);
   findings.sealed = sealed_in(model, findings.air->found);
   findings.cups = printed_cups(findings.air->cups, inquiry.process, inquiry.build);
   if (findings.cups) warn_of_suction(*findings.cups, inquiry.process, monitor);
@@ -147,7 +149,8 @@ DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageIn
   const double narrowest = kColumnsAcrossHole * findings.air->spacing;
   const auto asked = inquiry.process.limits.find(Limit::escape_hole);
   if (asked != inquiry.process.limits.end() && narrowest > asked->second.value)
-    monitor.notice(fmt::format("the model is large: holes narrower than {:.1f} mm may not be seen", narrowest));
+    monitor.notice(
+        fmt::format("the model is large: holes narrower than {:.1f} mm may not be seen", narrowest));
   judge(findings);
   return findings;
 }

@@ -36,7 +36,7 @@ struct DrainageInquiry {
 // How a model drains that is as it is.
 struct DrainageFindings {
   DrainageInquiry inquiry;
-  double widest_hole = 0;  // that was taken for one, mm
+  double widest_hole = 0;                // that was taken for one, mm
   std::optional<InspectedDrainage> air;  // absent: it bounds no solid
   OwnCavities sealed;
   std::optional<PrintedCups> cups;
@@ -45,7 +45,8 @@ struct DrainageFindings {
 };
 
 // Throws UsageError for a process without escape holes.
-DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageInquiry& inquiry, Monitor& monitor);
+DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageInquiry& inquiry,
+                                     Monitor& monitor);
 
 // As printed, and turned over after that, mm3.
 inline double as_printed(const TrappedPools& pools, Build build) {

@@ -118,7 +118,8 @@ TEST(InspectDrainage, AWallThinnerThanAColumnHolds) {
 
 TEST(InspectDrainage, AnOpenTubeIsNoHollowAndHoldsNothing) {
   const std::vector<float> across{0, 5, 8, 13};
-  const Mesh tube = make_blocks({across, across, {0, 30}}, [](int x, int y, int) { return x != 1 || y != 1; });
+  const Mesh tube =
+      make_blocks({across, across, {0, 30}}, [](int x, int y, int) { return x != 1 || y != 1; });
   const InspectedDrainage found = look_at(tube);
   EXPECT_TRUE(found.found.hollows.empty());
   EXPECT_EQ(found.recesses_upright, 0);

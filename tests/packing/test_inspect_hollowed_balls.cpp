@@ -80,14 +80,15 @@ TEST(InspectHollowedBalls, SeenAlongAnotherUpTheHoleIsAsHighAsItLies) {
   const InspectedDrainage found = look_at(meshed(without(shell(), hole_along({0, 0, 1}))), up);
   const double lean = std::acos(up.z), half = std::asin(kHoleRadius / kInner);
   // On the way out the tube rises: what is lowest is its outer rim's lowest point if that is higher.
-  const double sill = std::max(kInner * std::cos(lean + half),
-                               kOuter * std::cos(lean + std::asin(kHoleRadius / kOuter)));
+  const double sill =
+      std::max(kInner * std::cos(lean + half), kOuter * std::cos(lean + std::asin(kHoleRadius / kOuter)));
   EXPECT_NEAR(found.pools.upright, below(sill), kOnePercent);
   EXPECT_NEAR(found.pools.upside_down, below(-kInner * std::cos(half - lean)), kOnePercent);
 }
 
 TEST(InspectHollowedBalls, AHoleThatMissesTheHollowOnlyDentsItsWall) {
-  const InspectedDrainage found = look_at(meshed(without(shell(), rod({0, 0, -20}, {0, 0, -16}, kHoleRadius))));
+  const InspectedDrainage found =
+      look_at(meshed(without(shell(), rod({0, 0, -20}, {0, 0, -16}, kHoleRadius))));
   ASSERT_EQ(found.found.hollows.size(), 1U);
   EXPECT_TRUE(found.found.hollows.front().is_sealed);
   EXPECT_TRUE(found.found.holes.empty());

@@ -151,12 +151,13 @@ class Obstacles {
     all_.resize(first_.back());
     std::vector<std::size_t> next = first_;
     for (const Triangle& t : mesh.triangles)
-      for_each_obstacle(frame, corners_of(t), [&](std::size_t column, Obstacle obstacle) {
-        all_[next[column]++] = obstacle;
-      });
+      for_each_obstacle(frame, corners_of(t),
+                        [&](std::size_t column, Obstacle obstacle) { all_[next[column]++] = obstacle; });
     tbb::parallel_for(std::size_t{0}, first_.size() - 1, [&](std::size_t column) {
-      const std::span<Obstacle> own = std::span(all_).subspan(first_[column], first_[column + 1] - first_[column]);
-      std::sort(own.begin(), own.end(), [](const Obstacle& a, const Obstacle& b) { return a.lower < b.lower; });
+      const std::span<Obstacle> own =
+          std::span(all_).subspan(first_[column], first_[column + 1] - first_[column]);
+      std::sort(own.begin(), own.end(),
+                [](const Obstacle& a, const Obstacle& b) { return a.lower < b.lower; });
     });
   }
 
@@ -243,8 +244,8 @@ void add_spans(AirColumns& columns, const kernels::WindingView& winding) {
   std::vector<std::vector<AirSpan>> by_column(static_cast<std::size_t>(columns.count_x) * columns.count_y);
   tbb::parallel_for(std::uint32_t{0}, columns.count_y, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < columns.count_x; ++x)
-      by_column[columns.column(x, y)] = spans_at(winding, columns.origin_x + columns.spacing * x,
-                                                 columns.origin_y + columns.spacing * y);
+      by_column[columns.column(x, y)] =
+          spans_at(winding, columns.origin_x + columns.spacing * x, columns.origin_y + columns.spacing * y);
   });
   columns.first.assign(1, 0);
   for (std::size_t i = 0; i < by_column.size(); ++i) {

@@ -38,11 +38,11 @@ struct AirColumns {
   double origin_x = 0, origin_y = 0;
   double spacing = 1;
   std::uint32_t count_x = 0, count_y = 0;
-  std::vector<std::uint32_t> first;  // span of each column; the count of spans
-  std::vector<AirSpan> spans;        // from the lowest of its column to the highest
-  std::vector<std::uint32_t> column_of;  // by span
+  std::vector<std::uint32_t> first;        // span of each column; the count of spans
+  std::vector<AirSpan> spans;              // from the lowest of its column to the highest
+  std::vector<std::uint32_t> column_of;    // by span
   std::vector<std::size_t> first_passage;  // by span; the count of passages
-  std::vector<AirPassage> passages;  // each both ways
+  std::vector<AirPassage> passages;        // each both ways
 
   std::size_t column(std::uint32_t x, std::uint32_t y) const {
     return static_cast<std::size_t>(y) * count_x + x;

@@ -19,8 +19,8 @@ constexpr double kMostLayers = 10000;
 struct Enclosed {
   bool is_outside = false;
   Vec3d bottom{0, 0, kInfinity};  // its lowest place
-  double open_count = 0;  // of its spans, those that go on above the level
-  double open_floors = 0;  // sum of their floors
+  double open_count = 0;          // of its spans, those that go on above the level
+  double open_floors = 0;         // sum of their floors
   double closed_volume = 0;
   Vec3d middle{0, 0, 0};  // sum over its open spans
   AirCup widest;

@@ -109,13 +109,13 @@ void cover(AirNodes& nodes, const AirColumns& columns, const std::vector<char>& 
   }
   tbb::parallel_for(std::size_t{0}, std::size_t{columns.count_y}, [&](std::size_t y) {
     Envelope envelope;
-    for (std::size_t x = 0; x < columns.count_x; ++x) envelope.apply(&power[y * plane + x * layers], layers, 1);
+    for (std::size_t x = 0; x < columns.count_x; ++x)
+      envelope.apply(&power[y * plane + x * layers], layers, 1);
     for (std::size_t z = 0; z < layers; ++z) envelope.apply(&power[y * plane + z], columns.count_x, layers);
   });
   tbb::parallel_for(std::size_t{0}, std::size_t{columns.count_x}, [&](std::size_t x) {
     Envelope envelope;
-    for (std::size_t z = 0; z < layers; ++z)
-      envelope.apply(&power[x * layers + z], columns.count_y, plane);
+    for (std::size_t z = 0; z < layers; ++z) envelope.apply(&power[x * layers + z], columns.count_y, plane);
   });
   // Between balls that touch a flat face there is as little left as a quarter of spacing^2 / radius.
   constexpr float kTouching = 1;
@@ -141,7 +141,8 @@ AirNodes air_nodes(const AirColumns& columns, const SurfaceIndex& surface, doubl
   AirNodes nodes;
   nodes.reach = ball_radius + kDiagonal * spacing;
   nodes.origin_z = box.lower.z - (margin + 0.5) * spacing;
-  nodes.count_z = static_cast<std::uint32_t>(std::ceil((box.upper.z - box.lower.z) / spacing)) + 2 * margin + 1;
+  nodes.count_z =
+      static_cast<std::uint32_t>(std::ceil((box.upper.z - box.lower.z) / spacing)) + 2 * margin + 1;
   measure(nodes, columns, surface);
   cover(nodes, columns, reached_by_middle(columns, nodes, ball_radius));
   return nodes;

@@ -100,9 +100,8 @@ class TurnedOver {
     for (std::uint32_t i = 0; i < columns_.spans.size(); ++i) {
       if (is_part(i)) rising.push_back(i);
     }
-    std::stable_sort(rising.begin(), rising.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return flood_.height[a] < flood_.height[b];
-    });
+    std::stable_sort(rising.begin(), rising.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return flood_.height[a] < flood_.height[b]; });
     for (const std::uint32_t i : rising) {
       PoolSet& own = reach_[sets_.root(i)];
       for_each_way(i, [&](std::uint32_t to, double) { own |= reach_[sets_.root(to)]; });
@@ -113,9 +112,9 @@ class TurnedOver {
   const AirFlood& flood_;
   const std::vector<AirPart>& parts_;
   DisjointSets sets_;
-  std::vector<PoolSet> reach_;  // by the root of a set
-  std::vector<double> room_;    // by pool
-  std::vector<std::pair<PoolSet, double>> supply_;  // by where it can come to
+  std::vector<PoolSet> reach_;                          // by the root of a set
+  std::vector<double> room_;                            // by pool
+  std::vector<std::pair<PoolSet, double>> supply_;      // by where it can come to
   std::unordered_map<PoolSet, std::size_t> number_of_;  // of these
 };
 
@@ -149,8 +148,8 @@ AirFlood flood(const AirColumns& columns, std::size_t orientation) {
 double left_in(const AirColumns& columns, const AirFlood& flood, std::size_t orientation, std::uint32_t span,
                const AirPart& part) {
   const double level = flood.height[span];
-  const double height = orientation == kUpright ? std::min(part.to, level) - part.from
-                                                : part.to - std::max(part.from, -level);
+  const double height =
+      orientation == kUpright ? std::min(part.to, level) - part.from : part.to - std::max(part.from, -level);
   return columns.area() * std::max(0.0, height);
 }
 

@@ -68,7 +68,8 @@ bool is_hollow(const Pocket& pocket, bool is_sealed, double spacing, double wide
   if (pocket.nodes.size() < kLeastNodes || pocket.widest < 0.75 * spacing) return false;
   // It opens where the lattice cannot follow: by a crack, unless much is behind it.
   const double least_behind_crack = widest_hole * widest_hole * widest_hole / (spacing * spacing * spacing);
-  if (pocket.contacts == 0 && !is_sealed) return static_cast<double>(pocket.nodes.size()) > least_behind_crack;
+  if (pocket.contacts == 0 && !is_sealed)
+    return static_cast<double>(pocket.nodes.size()) > least_behind_crack;
   if (pocket.widest >= kWiderInside * pocket.widest_at_opening) return true;
   // In spacings.
   const auto area = static_cast<double>(pocket.contacts);
@@ -99,7 +100,8 @@ class HoleFinder {
     std::vector<std::size_t> beside;
     for (const std::size_t node : pocket.nodes) {
       bool touches = false;
-      neighbours_.for_each(node, [&](std::size_t next, int, int) { touches |= nodes_.is_outside[next] != 0; });
+      neighbours_.for_each(node,
+                           [&](std::size_t next, int, int) { touches |= nodes_.is_outside[next] != 0; });
       if (touches) beside.push_back(node);
     }
     std::sort(beside.begin(), beside.end());
@@ -130,8 +132,9 @@ class HoleFinder {
       for (int step = 0; step < 27; ++step) {
         const std::ptrdiff_t along_z = step % 3 - 1, along_x = step / 3 % 3 - 1, along_y = step / 9 - 1;
         const auto layers = static_cast<std::ptrdiff_t>(nodes_.count_z);
-        const std::ptrdiff_t next = static_cast<std::ptrdiff_t>(at) + along_z +
-                                    layers * (along_x + along_y * static_cast<std::ptrdiff_t>(columns_.count_x));
+        const std::ptrdiff_t next =
+            static_cast<std::ptrdiff_t>(at) + along_z +
+            layers * (along_x + along_y * static_cast<std::ptrdiff_t>(columns_.count_x));
         const auto found = std::lower_bound(beside.begin(), beside.end(), static_cast<std::size_t>(next));
         if (found == beside.end() || *found != static_cast<std::size_t>(next)) continue;
         const auto i = static_cast<std::size_t>(found - beside.begin());
@@ -144,9 +147,9 @@ class HoleFinder {
   }
 
   FoundHole hole_at(const std::vector<std::size_t>& cluster, std::uint32_t hollow) const {
-    const std::size_t widest = *std::max_element(cluster.begin(), cluster.end(), [&](std::size_t a, std::size_t b) {
-      return nodes_.clearance[a] < nodes_.clearance[b];
-    });
+    const std::size_t widest = *std::max_element(
+        cluster.begin(), cluster.end(),
+        [&](std::size_t a, std::size_t b) { return nodes_.clearance[a] < nodes_.clearance[b]; });
     Vec3d outwards{0, 0, 0};
     for (const std::size_t node : cluster) {
       neighbours_.for_each(node, [&](std::size_t next, int axis, int side) {
@@ -154,18 +157,31 @@ class HoleFinder {
         (axis == 0 ? outwards.x : axis == 1 ? outwards.y : outwards.z) += side;
       });
     }
-    const Vec3d middle = middle_near(place_of(widest), outwards);
-    return {middle, 2 * clearance_at(middle), hollow};
+    const Vec3d place = narrowest_inwards(place_of(widest), outwards);
+    return {place, 2 * clearance_at(place), hollow};
+  }
+
+  // The outside reaches some way in where a hole widens towards it: the narrowest place is at most so far inside.
+  Vec3d narrowest_inwards(Vec3d place, Vec3d outwards) const {
+    constexpr int kHalfSpacings = 6;
+    if (length(outwards) == 0) return place;
+    const Vec3d axis = normalised(outwards);
+    Vec3d at = middle_near(place, axis), narrowest = at;
+    for (int i = 0; i < kHalfSpacings; ++i) {
+      at = at - axis * (columns_.spacing / 2);
+      if (surface_.winding().winding_number(at) > 0) break;
+      at = middle_near(at, axis);
+      if (clearance_at(at) < clearance_at(narrowest)) narrowest = at;
+    }
+    return narrowest;
   }
 
   double clearance_at(Vec3d p) const {
     return std::sqrt(surface_.bvh().nearest(p, kInfinity).distance_squared);
   }
 
-  // Where in its plane the hole is clearest: nodes lie beside its axis.
-  Vec3d middle_near(Vec3d place, Vec3d outwards) const {
-    if (length(outwards) == 0) return place;
-    const Vec3d axis = normalised(outwards);
+  // Where in a plane across the hole it is clearest: nodes lie beside its axis.
+  Vec3d middle_near(Vec3d place, Vec3d axis) const {
     const Vec3d aside = std::abs(axis.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
     const Vec3d u = normalised(cross(axis, aside)), v = cross(axis, u);
     const Vec3d node = place;
@@ -286,7 +302,9 @@ class WallFinder {
 
  private:
   bool is_outside_at(Vec3d p) const {
-    const auto down = [&](double along) { return static_cast<std::ptrdiff_t>(std::floor(along / columns_.spacing)); };
+    const auto down = [&](double along) {
+      return static_cast<std::ptrdiff_t>(std::floor(along / columns_.spacing));
+    };
     const std::ptrdiff_t x = down(p.x - columns_.origin_x), y = down(p.y - columns_.origin_y),
                          z = down(p.z - nodes_.origin_z);
     for (std::ptrdiff_t corner = 0; corner < 8; ++corner) {
@@ -295,7 +313,8 @@ class WallFinder {
                             j < static_cast<std::ptrdiff_t>(columns_.count_y) &&
                             k < static_cast<std::ptrdiff_t>(nodes_.count_z);
       if (!is_there) continue;
-      const std::size_t column = columns_.column(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+      const std::size_t column =
+          columns_.column(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
       if (nodes_.is_outside[column * nodes_.count_z + static_cast<std::size_t>(k)] != 0) return true;
     }
     return false;
@@ -348,7 +367,8 @@ FoundHollows find_hollows(const AirColumns& columns, const AirNodes& nodes, cons
                           const AirFlood& drained, double widest_hole) {
   std::vector<std::uint32_t> pocket_of;
   const std::vector<Pocket> pockets = pockets_of(columns, nodes, pocket_of);
-  const std::vector<std::uint32_t> hollow_of = hollow_pockets(pockets, nodes, drained, columns.spacing, widest_hole);
+  const std::vector<std::uint32_t> hollow_of =
+      hollow_pockets(pockets, nodes, drained, columns.spacing, widest_hole);
   std::vector<std::uint32_t> hollow_of_pocket(pockets.size(), kNone);
   for (std::uint32_t i = 0; i < hollow_of.size(); ++i) hollow_of_pocket[hollow_of[i]] = i;
   HollowSpans spans = SpanSorter(columns, nodes, pockets, pocket_of, hollow_of_pocket).take();

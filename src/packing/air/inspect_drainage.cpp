@@ -12,8 +12,8 @@ namespace {
 
 // Columns are so many to the width of the widest hole, unless there would be more nodes than this.
 constexpr double kColumnsPerHole = 16;
-constexpr double kMostNodes = 6e6;
-constexpr double kMostColumns = 4e5;
+constexpr double kMostNodes = 4e6;
+constexpr double kMostColumns = 2e5;
 constexpr double kWider = 1.05;
 
 double spacing_of_nodes(const Box3d& box, double widest_hole) {
@@ -83,10 +83,10 @@ InspectedDrainage inspect_drainage(const Mesh& model, const DrainageQuestion& qu
   monitor.check_interrupted();
   result.found = find_hollows(columns, nodes, surface, floods.upright, question.widest_hole);
   monitor.check_interrupted();
-  result.pools =
-      pools_in(columns, floods, parts_that_open(columns, floods.upright, result.found));
+  result.pools = pools_in(columns, floods, parts_that_open(columns, floods.upright, result.found));
   result.recesses_upright = left_in_recesses(columns, floods.upright, kUpright, result.found.parts);
-  result.recesses_upside_down = left_in_recesses(columns, floods.upside_down, kUpsideDown, result.found.parts);
+  result.recesses_upside_down =
+      left_in_recesses(columns, floods.upside_down, kUpsideDown, result.found.parts);
   result.cups = cups_of(columns);
   turn_back(result.cups, frame);
   result.found.parts.clear();

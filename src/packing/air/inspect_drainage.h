@@ -20,9 +20,10 @@ struct DrainageQuestion {
 };
 
 struct InspectedDrainage {
-  double spacing = 0;   // of the columns that it was found out on, mm: holes of less than three are not seen reliably
-  FoundHollows found;   // without parts; in the model's coordinates
-  TrappedPools pools;   // in hollows that are not sealed; `total`: their volume
+  double spacing =
+      0;  // of the columns that it was found out on, mm: holes of less than three are not seen reliably
+  FoundHollows found;  // without parts; in the model's coordinates
+  TrappedPools pools;  // in hollows that are not sealed; `total`: their volume
   // What stays in recesses that belong to the outside, and are no less deep than columns are wide.
   double recesses_upright = 0, recesses_upside_down = 0;
   std::vector<AirCup> cups;  // that the print closes in while it grows, the widest first
