@@ -198,11 +198,11 @@ struct Join {
 std::vector<Join> joins_of(const AirColumns& columns, const Mesh& mesh, int family) {
   const PairFrame frame{columns, family};
   const Obstacles obstacles(mesh, frame);
-  const auto [step_x, step_y] = frame.step();
+  const std::pair<int, int> step = frame.step();
   std::vector<std::vector<Join>> by_row(columns.count_y);
   tbb::parallel_for(std::uint32_t{0}, columns.count_y, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < columns.count_x; ++x) {
-      const int other_x = static_cast<int>(x) + step_x, other_y = static_cast<int>(y) + step_y;
+      const int other_x = static_cast<int>(x) + step.first, other_y = static_cast<int>(y) + step.second;
       if (!frame.holds(other_x, other_y)) continue;
       const std::size_t here = columns.column(x, y);
       const std::size_t there =
