@@ -9,6 +9,8 @@ constexpr LimitUnit kMillimetres{"mm", "mm", "MM"};
 constexpr LimitUnit kSquareMillimetres{"mm2", "mm2", "MM2"};
 constexpr LimitUnit kDegreesFromVertical{"degrees from the vertical", "deg", "DEG"};
 
+constexpr LimitUnit kDegrees{"degrees", "deg", "DEG"};
+
 constexpr std::optional<double> kMoreThanZero;
 
 constexpr LimitRow kRows[] = {
@@ -34,6 +36,10 @@ constexpr LimitRow kRows[] = {
     {Limit::escape_hole, LimitGroup::drainage, "escape-hole", "--hole-diameter", kMillimetres, kMoreThanZero,
      "Diameter of the escape holes, no less than that of channels"},
     {Limit::cup, LimitGroup::printer, "cup", "", kSquareMillimetres, 0.0, ""},
+    {Limit::plug_clearance, LimitGroup::plugs, "plug-clearance", "--plug-clearance", kMillimetres, 0.0,
+     "What plugs leave free in their holes all round, where they are widest"},
+    {Limit::plug_taper, LimitGroup::plugs, "plug-taper", "--plug-taper", kDegrees, 0.0,
+     "Angle by which a plug narrows inwards, on each side", 30},
 };
 static_assert(std::size(kRows) == kLimitCount);
 
@@ -59,6 +65,8 @@ const LimitRow& row_of(Limit limit) {
 //   Materialise: design guidelines for PA 12 (SLS)
 //   Shapeways: guidelines for its nylon (escape holes)
 //   Protolabs: "How to Design 4 Common Metal 3D Printing Features"
+//   Makelab: "What clearance should I give two fitting parts?"
+//   Layer X: "Designing snap fits, press fits, and assembly tolerances for 3D printed parts"
 std::span<const Process> processes() {
   static const Process kProcesses[] = {
       {"fdm",
@@ -72,7 +80,9 @@ std::span<const Process> processes() {
         {Limit::least_wall, {0.4, own("the nozzle's diameter")}},
         {Limit::least_gap, {0.45, own("one extrusion line of a 0.4 mm nozzle")}},
         {Limit::overhang, {45, "Hubs"}},
-        {Limit::bridge, {5, "the lower end of the 5 to 10 mm that guides give; Hubs 10 mm"}}}},
+        {Limit::bridge, {5, "the lower end of the 5 to 10 mm that guides give; Hubs 10 mm"}},
+        {Limit::plug_clearance, {0.2, "Makelab: 0.4 mm between fitting parts, half of it on each side"}},
+        {Limit::plug_taper, {2, own("goes in by itself and still fills the hole")}}}},
       {"sla",
        "stereolithography and other resin printers",
        "resin",
@@ -87,7 +97,9 @@ std::span<const Process> processes() {
         {Limit::overhang, {71, "Formlabs: 19 degrees from the level"}},
         {Limit::channel, {3.5, "Formlabs: drain holes of at least 3.5 mm"}},
         {Limit::escape_hole, {3.5, "Formlabs: at least 3.5 mm, two of them"}},
-        {Limit::cup, {100, own("guides give no figure; the air presses on this with 10 N at most")}}}},
+        {Limit::cup, {100, own("guides give no figure; the air presses on this with 10 N at most")}},
+        {Limit::plug_clearance, {0.125, "Makelab: 0.25 mm between fitting parts, half of it on each side"}},
+        {Limit::plug_taper, {2, own("goes in by itself and still fills the hole")}}}},
       {"sls",
        "powder bed, plastic (SLS, MJF)",
        "PA12",
@@ -99,7 +111,10 @@ std::span<const Process> processes() {
         {Limit::least_wall, {0.7, "Hubs: supported wall"}},
         {Limit::least_gap, {0.7, "Hubs: supported wall"}},
         {Limit::channel, {4.0, "Shapeways: one hole of at least 4 mm"}},
-        {Limit::escape_hole, {5.0, "Hubs: 5 mm"}}}},
+        {Limit::escape_hole, {5.0, "Hubs: 5 mm"}},
+        {Limit::plug_clearance,
+         {0.25, "Materialise, PA 12: 0.5 mm of play for a lid on a hollowed part, half of it on each side"}},
+        {Limit::plug_taper, {2, own("goes in by itself and still fills the hole")}}}},
       {"metal",
        "powder bed, metal (DMLS, SLM)",
        "AlSi10Mg",
@@ -113,7 +128,9 @@ std::span<const Process> processes() {
         {Limit::overhang, {45, "Protolabs: self-supporting angles; Hubs"}},
         {Limit::bridge, {2, "Hubs"}},
         {Limit::channel, {2.8, own("level ones have ceilings beyond 45 degrees as wide as the bridge")}},
-        {Limit::escape_hole, {5.0, "Hubs: 5 mm"}}}}};
+        {Limit::escape_hole, {5.0, "Hubs: 5 mm"}},
+        {Limit::plug_clearance, {0.15, "Layer X: DMLS parts are accurate to 0.05 to 0.15 mm as built"}},
+        {Limit::plug_taper, {2, own("goes in by itself and still fills the hole")}}}}};
   return kProcesses;
 }
 

@@ -11,19 +11,21 @@ namespace aerate {
 
 // The figures that a process sets, in the order of their rows.
 enum class Limit {
-  wall,         // least thickness between a void and the model's surface
-  gap,          // least thickness between two voids
-  min_radius,   // smaller voids are not made
-  max_radius,   // of the largest voids
-  least_wall,   // a thinner wall cannot be printed at all
-  least_gap,    // nor can a thinner gap
-  overhang,     // a ceiling flatter than this needs support...
-  bridge,       // ...unless it is no wider than this
-  channel,      // diameter of a channel that joins two voids
-  escape_hole,  // diameter of a hole to the outside
-  cup,  // area that a layer may close in over what was printed below it, where parts are pulled off a film
+  wall,            // least thickness between a void and the model's surface
+  gap,             // least thickness between two voids
+  min_radius,      // smaller voids are not made
+  max_radius,      // of the largest voids
+  least_wall,      // a thinner wall cannot be printed at all
+  least_gap,       // nor can a thinner gap
+  overhang,        // a ceiling flatter than this needs support...
+  bridge,          // ...unless it is no wider than this
+  channel,         // diameter of a channel that joins two voids
+  escape_hole,     // diameter of a hole to the outside
+  cup,             // area that a layer may close in over what was printed, where parts are pulled off a film
+  plug_clearance,  // between a plug, where it is widest, and its hole all round
+  plug_taper,      // by which its side leans away from the hole's
 };
-inline constexpr std::size_t kLimitCount = 11;
+inline constexpr std::size_t kLimitCount = 13;
 
 // When a job is under a limit.
 enum class LimitGroup {
@@ -31,6 +33,7 @@ enum class LimitGroup {
   printer,   // never: walls, gaps and cups are held against it
   ceilings,  // where the process or the user gives both of these
   drainage,  // where voids drain
+  plugs,     // where plugs for the holes are made
 };
 
 // No length of a print is beyond this, mm.

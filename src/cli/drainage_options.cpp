@@ -10,6 +10,7 @@
 #include "cli/numbers.h"
 #include "core/error.h"
 #include "core/listed.h"
+#include "files/formats.h"
 
 namespace aerate::cli {
 namespace {
@@ -73,6 +74,7 @@ Build BuildOption::build() const {
 DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
     : drain_option_(add_drain(command, drain_)),
       limits_(command, config, {LimitGroup::drainage}),
+      plug_limits_(command, config, {LimitGroup::plugs}),
       build_(command) {
   command
       .add_option("--escape-hole", places_,
@@ -94,6 +96,13 @@ DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
   add_sides("--holes-not-on", not_on_,
             "They do not come out there: a side as above, above:HEIGHT, below:HEIGHT (along --up, mm) or "
             "box:x0,y0,z0,x1,y1,z1 (mm); may be repeated");
+  command
+      .add_option(
+          "--plugs", plugs_,
+          "Write a plug for each escape hole to this file too: a pin that narrows inwards, ends flush with "
+          "the model's surface and has the hole's number on its inner end; " +
+              endings_that_are_written())
+      ->type_name("FILE");
 }
 
 void DrainageOptions::require_no_tubes() const {
@@ -105,6 +114,8 @@ void DrainageOptions::require_no_tubes() const {
   if (!on_.empty()) refuse("--holes-on");
   if (!not_on_.empty()) refuse("--holes-not-on");
   if (build_.is_given()) refuse("--build");
+  if (!plugs_.empty()) refuse("--plugs");
+  for (const auto& [limit, given] : plug_limits_.given()) refuse(row_of(limit).option);
 }
 
 HoleSides DrainageOptions::sides(Vec3d up) const {
@@ -165,6 +176,20 @@ HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
   options.drainage = drainage_request(options.packing.process, escape_holes());
   options.drainage->sides = sides(choice.direction.up);
   options.build = build_.build();
+  return with_plugs_asked_for(std::move(options));
+}
+
+HollowOptions DrainageOptions::with_plugs_asked_for(HollowOptions options) const {
+  const Limits given = plug_limits_.given();
+  if (plugs_.empty()) {
+    if (!given.empty())
+      throw UsageError(fmt::format("{} is for plugs", row_of(given.begin()->first).option),
+                       "add --plugs FILE");
+    return options;
+  }
+  options.packing.process = with_plugs(std::move(options.packing.process), given);
+  const Limits& limits = options.packing.process.limits;
+  options.plugs = {plugs_, {limits.at(Limit::plug_clearance).value, limits.at(Limit::plug_taper).value}};
   return options;
 }
 

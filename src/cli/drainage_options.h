@@ -21,7 +21,7 @@ class BuildOption {
   const CLI::Option* option_;
 };
 
-// --drain, --no-drain, the limits of drainage, --escape-hole, --holes-on, --holes-not-on, --build
+// --drain, --no-drain, the limits of drainage and of plugs, --escape-hole, --holes-on, --holes-not-on, --build, --plugs
 class DrainageOptions {
  public:
   DrainageOptions(CLI::App& command, const ConfigFile& config);
@@ -30,11 +30,16 @@ class DrainageOptions {
   // UsageError for options that contradict each other or the process.
   HollowOptions applied_to(HollowOptions options) const;
 
+  // The file of plugs; empty unless asked for.
+  const std::string& plugs() const { return plugs_; }
+
   // Whether --drain itself was given.
   bool is_asked_for() const { return drain_option_->count() > 0 && drain_; }
 
  private:
   void require_no_tubes() const;
+  // Throws UsageError for limits of plugs without these.
+  HollowOptions with_plugs_asked_for(HollowOptions options) const;
   // Throws UsageError for what is no point, all of it in one message.
   std::vector<Vec3d> escape_holes() const;
 
@@ -43,7 +48,8 @@ class DrainageOptions {
 
   bool drain_ = false;
   const CLI::Option* drain_option_;
-  LimitOptions limits_;
+  LimitOptions limits_, plug_limits_;
+  std::string plugs_;
   std::vector<std::string> places_, on_, not_on_;
   BuildOption build_;
 };

@@ -266,6 +266,7 @@ struct HollowCommand {
     JobFiles files{packing.inputs(model.path), {output}};
     for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
     files.inputs.push_back({"list of spheres", spheres});
+    if (!drainage.plugs().empty()) files.outputs.emplace_back(drainage.plugs());
     run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
   }
 

@@ -269,6 +269,27 @@ Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured, Bui
             {"full", drainage.dropped.full}}}};
 }
 
+// Each hole with its plug.
+void add_plugs(Json& drainage, const std::optional<WrittenPlugs>& written) {
+  for (Json& hole : drainage["holes"]) hole["plug"] = nullptr;
+  drainage["plugs"] = nullptr;
+  if (!written) return;
+  for (const Plug& plug : written->plugs.plugs) {
+    drainage["holes"][plug.hole]["plug"] = {{"number", plug.hole + 1},
+                                            {"is_engraved", plug.is_numbered},
+                                            {"place_mm", {plug.place.x, plug.place.y}},
+                                            {"diameter_mm", 2 * plug.radius},
+                                            {"inner_diameter_mm", 2 * plug.inner_radius},
+                                            {"shortest_mm", plug.shortest},
+                                            {"longest_mm", plug.longest}};
+  }
+  drainage["plugs"] = {
+      {"path", written->request.output.string()}, {"bytes", written->bytes},
+      {"count", written->plugs.plugs.size()},     {"volume_mm3", written->facts.volume},
+      {"clearance_mm", written->facts.clearance}, {"taper_degrees", written->request.fit.taper_degrees},
+      {"flush_within_mm", written->facts.flush}};
+}
+
 Json json_of(const Balance& balance, const OutputFacts& output, const ShareOfBound& blocks) {
   return {{"solid_fraction", output.volume_after / output.volume_before},
           {"relative_stiffness_upper_bound", balance.stiffness},
@@ -349,6 +370,7 @@ std::string to_json(const HollowReport& report) {
   json["drainage"] =
       report.drainage ? json_of(*report.drainage, *output.drainage, report.build) : Json(nullptr);
   json["cups"] = json_of(report.cups);
+  if (report.drainage) add_plugs(json["drainage"], report.plugs);
   json["volume"] = volume_of(report);
   json["modifiers"] = modifiers_of(report);
   json["centre_of_mass"] = {

@@ -191,6 +191,15 @@ void add_drainage(Lines& lines, const HollowReport& report) {
               count_of(drainage.dropped.count(), "void", "voids"), drainage.dropped.volume);
 }
 
+void add_plugs(Lines& lines, const std::optional<WrittenPlugs>& written) {
+  if (!written) return;
+  const auto& [request, plugs, facts, bytes] = *written;
+  lines.add("plugs", "{}: {} for {}, {:.3g} mm free all round, {:g} degrees of taper; flush within {:.2g} mm",
+            request.output.filename().string(), count_of(plugs.plugs.size(), "plug", "plugs"),
+            count_of(plugs.plugs.size() + plugs.without.size(), "hole", "holes"), facts.clearance,
+            request.fit.taper_degrees, facts.flush);
+}
+
 const char* in_words(TimeChange change) {
   switch (change) {
     case TimeChange::shorter:
@@ -382,6 +391,7 @@ std::string to_text(const HollowReport& report) {
       report.limits.roof, report.tolerance_used, report.process);
   add_drainage(lines, report);
   if (report.cups) add_cups(lines, *report.cups);
+  add_plugs(lines, report.plugs);
   if (!report.modifiers) add_balance(lines, report);
   add_material(lines, report);
   lines.add("output", "{}: {} ({} outside, {}), {}", report.output_path.filename().string(),

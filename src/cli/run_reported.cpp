@@ -1,5 +1,7 @@
 #include "cli/run_reported.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <fmt/format.h>
 #include <iostream>
 #include <optional>
@@ -36,6 +38,14 @@ void require_other_files(const std::string& json, const JobFiles& files) {
     }
     if (has_json && is_same_file(input, json))
       throw UsageError(fmt::format("--json {} would replace the {}", json, what), "give another name");
+  }
+  for (std::size_t i = 1; i < files.outputs.size(); ++i) {
+    const fs::path& output = files.outputs[i];
+    const auto before = files.outputs.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(files.outputs.begin(), before,
+                    [&](const fs::path& other) { return is_same_file(other, output); }))
+      throw UsageError(fmt::format("{} would be written twice", output.string()),
+                       "give each output a name of its own");
   }
   for (const fs::path& output : files.outputs) {
     if (has_json && is_same_file(output, json))

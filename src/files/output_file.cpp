@@ -121,9 +121,15 @@ void PendingFile::take_over_attributes() const {
   if (::chmod(path_.c_str(), replaced.st_mode & 0777) != 0) throw cannot_write(target_, errno);
 }
 
-void PendingFile::commit() {
+void PendingFile::prepare() {
+  if (prepared_) return;
   flush_to_disk(path_, target_);
   take_over_attributes();
+  prepared_ = true;
+}
+
+void PendingFile::commit() {
+  prepare();
   if (::rename(path_.c_str(), target_.c_str()) != 0) throw cannot_write(target_, errno);
   committed_ = true;
 
@@ -134,6 +140,19 @@ void PendingFile::commit() {
   if (descriptor < 0) return;
   ::fsync(descriptor);
   ::close(descriptor);
+}
+
+void commit_both(PendingFile& first, PendingFile& second) {
+  first.prepare();
+  second.prepare();
+  first.commit();
+  try {
+    second.commit();
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(first.target(), ignored);
+    throw;
+  }
 }
 
 OutputFile::OutputFile(Destination destination)

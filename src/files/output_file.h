@@ -23,15 +23,21 @@ class PendingFile {
 
   const std::filesystem::path& path() const { return path_; }      // where to write
   const std::filesystem::path& target() const { return target_; }  // what the user asked for
-  void commit();  // flushes to disk and renames onto the target, atomically
+  void
+  prepare();      // flushes to disk: all of `commit` that fails for want of room or rights in the file itself
+  void commit();  // prepares unless that was done, and renames onto the target, atomically
 
  private:
   void create(unsigned mode);
   void take_over_attributes() const;
 
   std::filesystem::path target_, path_;
-  bool committed_ = false;
+  bool prepared_ = false, committed_ = false;
 };
+
+// Makes both files their targets, or neither: all that can fail but renaming is done before the first takes its place.
+// Should renaming the second one fail, the first is removed again; a file that it replaced is then gone.
+void commit_both(PendingFile& first, PendingFile& second);
 
 // Where bytes go, and the name that errors use: of a pending file, its target.
 struct Destination {

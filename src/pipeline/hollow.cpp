@@ -9,6 +9,7 @@
 #include "pipeline/best_form.h"
 #include "pipeline/job_log.h"
 #include "pipeline/own_cavities.h"
+#include "pipeline/plug_file.h"
 #include "pipeline/solid_file.h"
 
 namespace aerate {
@@ -46,7 +47,7 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
     written.balance = balance_of(hollowed.model.mesh, written.facts, hollowed.packing.limits.roof.up);
     warn_of_tipping(written.balance, written.facts, monitor);
   };
-  write_checked(hollowed.carved.solid, pending, solid_format_of(options), check, monitor);
+  write_beside(hollowed.carved.solid, pending, solid_format_of(options), check, monitor);
   return written;
 }
 
@@ -105,21 +106,32 @@ std::optional<PrintedCups> cups_of(const HollowedModel& hollowed, const HollowOp
 
 HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor) {
   AnnouncedFile pending(options.output, monitor);
-  return report_of(hollowed, write_to(pending, hollowed, options, monitor), options);
+  const WrittenFile written = write_to(pending, hollowed, options, monitor);
+  pending.file().commit();
+  return report_of(hollowed, written, options);
 }
 
 HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
   const HollowOptions& options = forms.front();
   static_cast<void>(solid_format_of(options));  // refuses what cannot be written
+  if (options.plugs) require_writable(*options.plugs);
   JobLog log(monitor);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);
+  std::optional<AnnouncedFile> pending_plugs;
+  if (options.plugs) pending_plugs.emplace(options.plugs->output, log);
   const HollowedForm best = carve_best_form(forms, log);
   const WrittenFile written = write_to(pending, best.hollowed, *best.options, log);
   HollowReport report = report_of(best.hollowed, written, *best.options, best.print);
   if (!best.options->modifiers)
     warn_of_cavities(best.hollowed.model.inspection, best.hollowed.request.process.process, log);
   report.cups = cups_of(best.hollowed, *best.options, log);
+  if (pending_plugs) {
+    report.plugs = write_plugs(*pending_plugs, best.hollowed, *options.plugs, log);
+    commit_both(pending_plugs->file(), pending.file());
+  } else {
+    pending.file().commit();
+  }
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

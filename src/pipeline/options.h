@@ -14,6 +14,7 @@
 #include "pipeline/process_choice.h"
 #include "pipeline/region_request.h"
 #include "printing/materials.h"
+#include "printing/plugs.h"
 #include "printing/print_settings.h"
 
 namespace aerate {
@@ -103,6 +104,12 @@ struct SavingTarget {
   double value = 0;
 };
 
+// Plugs for the escape holes, in a file of their own.
+struct PlugRequest {
+  std::filesystem::path output;
+  PlugFit fit;
+};
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
@@ -119,6 +126,7 @@ struct HollowOptions {
   // If given, voids are joined by channels and opened by escape holes; else each is sealed.
   std::optional<DrainageRequest> drainage;
   Build build = Build::standing;
+  std::optional<PlugRequest> plugs;  // if given, of voids that drain
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.
   double tolerance = 0.05;

@@ -202,6 +202,18 @@ ProcessChoice with_tubes(ProcessChoice choice, const Limits& given) {
   return choice;
 }
 
+ProcessChoice with_plugs(ProcessChoice choice, const Limits& given) {
+  const Limits all = all_limits(choice.process, given);
+  for (const LimitRow& row : limit_rows()) {
+    if (row.group != LimitGroup::plugs) continue;
+    if (!all.contains(row.limit))
+      throw UsageError(fmt::format("process {}: --plugs needs a {}", choice.process.name, row.name),
+                       fmt::format("give {}", row.option));
+    choice.limits[row.limit] = all.at(row.limit);
+  }
+  return choice;
+}
+
 PackingLimits packing_limits(const ProcessChoice& choice) {
   const auto value = [&](Limit limit) { return choice.limits.at(limit).value; };
   const bool limits_ceilings = choice.limits.contains(Limit::bridge);

@@ -84,6 +84,9 @@ ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& se
 // UsageError if one is neither, or if holes are narrower than channels.
 ProcessChoice with_tubes(ProcessChoice choice, const Limits& given);
 
+// The same with plugs for the holes: under their limits too. Throws UsageError if one is not to be had.
+ProcessChoice with_plugs(ProcessChoice choice, const Limits& given);
+
 // What packers are to keep to, and the roofs that follow from it. Throws UsageError for an overhang, a bridge
 // or a direction that makes no roof.
 PackingLimits packing_limits(const ProcessChoice& choice);

@@ -15,6 +15,7 @@
 #include "pipeline/drainage_verdict.h"
 #include "pipeline/input_facts.h"
 #include "pipeline/options.h"
+#include "pipeline/plug_file.h"
 #include "pipeline/print_prediction.h"
 #include "pipeline/target.h"
 #include "printing/strength.h"
@@ -65,6 +66,7 @@ struct HollowReport {
   OutputFacts output;
   // Of voids that drain; absent where each is sealed.
   std::optional<DrainedVoids> drainage;
+  std::optional<WrittenPlugs> plugs;  // absent unless asked for
   std::optional<KeptFacts> kept;      // absent without such regions
   std::optional<TargetFacts> target;  // absent where none was asked for
   Build build = Build::standing;

@@ -52,14 +52,19 @@ Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, cons
   return with_void_shells_turned(std::move(mesh), solid);
 }
 
-void write_checked(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
-                   const std::function<void(const Mesh& written)>& check, Monitor& monitor) {
+void write_beside(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
+                  const std::function<void(const Mesh& written)>& check, Monitor& monitor) {
   monitor.stage("write");
   write_solid(solid, pending.file(), format);
   monitor.check_interrupted();
   monitor.stage("check");
   check(read_back_solid(solid, pending.file().path(), format, monitor));
   monitor.check_interrupted();
+}
+
+void write_checked(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
+                   const std::function<void(const Mesh& written)>& check, Monitor& monitor) {
+  write_beside(solid, pending, format, check, monitor);
   pending.file().commit();
 }
 
