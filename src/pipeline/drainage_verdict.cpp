@@ -133,7 +133,7 @@ DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageIn
                             .cups = std::nullopt,
                             .drains = false,
                             .verdict = {}};
-  PreparedModel model{read.input, read.mesh, read.inspection, std::nullopt, std::nullopt};
+  PreparedModel model{read.input, read.mesh, read.inspection, std::nullopt, std::nullopt, {}, std::nullopt};
   try {
     model = make_usable(std::move(model), {.mode = SurfaceMode::keep}, monitor);
   } catch (const MeshError& error) {

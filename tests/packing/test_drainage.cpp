@@ -228,7 +228,7 @@ TEST(HolePlaces, ComeInOrderBeforeAllAreLookedAt) {
   const DrainageRequest request{.channel_radius = 1, .hole_radius = 2, .escape_holes = {}};
   const SurfaceIndex surface(box);
   const TubeClearance clearance(surface, packing, 20, 2);
-  HolePlaces places(surface.winding(), voids, packing.limits, request, clearance);
+  HolePlaces places({surface, surface.winding()}, voids, packing.limits, request, clearance);
   const auto all = [&] {
     std::vector<EscapeHole> holes;
     HolePlaces::Ranking ranking = places.ranked(std::vector<std::uint32_t>{0, 1, 2}, {0, 0, -1}, 1);
