@@ -224,14 +224,11 @@ struct HollowCommand {
     const bool makes_cells = asked.value_or(is_cells_unasked(options));
     std::vector<HollowOptions> forms{shaped(options, makes_cells)};
     const bool can_compare = (options.drainage || options.infill_is_known) && !options.target;
-    const bool says_how_large = !is_default(options.packing.process, Limit::max_radius) ||
-                                !is_default(options.packing.process, Limit::min_radius) ||
-                                options.packing.stop.max_count != PackingStop{}.max_count;
     if (cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
-    if (makes_cells && options.drainage && !says_how_large) {
-      forms.push_back(forms.front());
-      forms.back().packing.process = with_larger_cells(std::move(forms.back().packing.process));
-    }
+    const ProcessChoice& limits = options.packing.process;
+    const bool is_sized = !is_default(limits, Limit::min_radius) || !is_default(limits, Limit::max_radius) ||
+                          options.packing.stop.max_count != PackingStop{}.max_count;
+    if (!is_sized) add_larger_cells(forms);
     // More freedom is not to remove less.
     if (const auto usual = with_usual_limits(options.packing.process); usual && options.drainage) {
       HollowOptions within = options;
@@ -241,10 +238,20 @@ struct HollowCommand {
     if (asked) return forms;
     try {
       forms.push_back(shaped(options, !makes_cells));
+      if (!is_sized) add_larger_cells(forms);
     } catch (const UsageError&) {
       // These options leave no choice.
     }
     return forms;
+  }
+
+  // After cells that drain: cells twice as large.
+  static void add_larger_cells(std::vector<HollowOptions>& forms) {
+    const HollowOptions& last = forms.back();
+    if (!last.cells || !last.drainage) return;
+    HollowOptions larger = last;
+    larger.packing.process = with_larger_cells(std::move(larger.packing.process));
+    forms.push_back(std::move(larger));
   }
 
   static bool may_be_cells(const HollowOptions& options) {

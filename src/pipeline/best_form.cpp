@@ -69,7 +69,7 @@ bool is_worth_trying(const HollowOptions& other, const HollowedForm& best) {
   if (best.options->infill_is_known || leaves_out_much(best)) return true;
   if (other.cells.has_value() != best.options->cells.has_value()) return false;
   // Each group of voids takes two holes; there are fewer groups of larger cells.
-  const bool are_larger = cell_size(other) > cell_size(*best.options);
+  const bool are_larger = other.packing.limits().max_radius > best.options->packing.limits().max_radius;
   return !are_larger || count_groups(best) > 1;
 }
 
