@@ -28,7 +28,7 @@ void check_shell(const Mesh& mesh, const Plug& plug, std::vector<char>& is_taken
   std::vector<std::uint32_t> vertices;
   for (const Triangle& t : triangles_of(mesh, plug)) vertices.insert(vertices.end(), t.begin(), t.end());
   std::ranges::sort(vertices);
-  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   float lowest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t vertex : vertices) {
     if (is_taken[vertex] != 0) fail_check("plug {} touches another", number);
