@@ -255,6 +255,34 @@ TEST_F(WriteTest, AnExceptionLeavesTheTargetAndTheFolderAsTheyWere) {
   EXPECT_EQ(contents_of(target), "old");
 }
 
+TEST_F(WriteTest, TwoFilesAreCommittedTogetherOrNotAtAll) {
+  const fs::path first = folder_ / "a.stl", second = folder_ / "b.stl";
+  std::ofstream(first) << "old";
+  {
+    PendingFile a(first), b(second);
+    write_bytes("new a", a);
+    fs::remove(b.path());  // lost before it is on disk
+    EXPECT_THROW(commit_both(a, b), FailureError);
+  }
+  EXPECT_EQ(contents_of(first), "old");
+  EXPECT_EQ(files_in_folder(), 1);
+  {
+    PendingFile a(first), b(second);
+    write_bytes("new a", a);
+    fs::create_directory(second);  // comes into the way: only renaming fails
+    EXPECT_THROW(commit_both(a, b), FailureError);
+  }
+  EXPECT_FALSE(fs::exists(first));
+  fs::remove(second);
+  PendingFile a(first), b(second);
+  write_bytes("new a", a);
+  write_bytes("new b", b);
+  commit_both(a, b);
+  EXPECT_EQ(contents_of(first), "new a");
+  EXPECT_EQ(contents_of(second), "new b");
+  EXPECT_EQ(files_in_folder(), 2);
+}
+
 TEST_F(WriteTest, ASymbolicLinkStaysALink) {
   fs::create_directory(folder_ / "elsewhere");
   std::ofstream(folder_ / "elsewhere" / "real.stl") << "old";
