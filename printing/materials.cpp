@@ -35,13 +35,20 @@ std::string material_names() {
 }
 
 Material choose_material(const std::string& name, std::optional<double> density_g_cm3,
-                         std::optional<double> price_per_kg) {
-  if (density_g_cm3 && price_per_kg) return {name, *density_g_cm3, *price_per_kg};
+                         std::optional<double> price, PriceUnit per) {
+  // A litre weighs as many kilograms as a cubic centimetre has grams.
+  const auto priced = [&](Material material) {
+    if (!price) return material;
+    material.price_per_kg = per == PriceUnit::litre ? *price / material.density_g_cm3 : *price;
+    material.priced_per = per;
+    return material;
+  };
+  if (density_g_cm3 && price) return priced({.name = name, .density_g_cm3 = *density_g_cm3});
   for (const Material& preset : materials()) {
-    if (equal_in_any_case(preset.name, name)) {
-      return {preset.name, density_g_cm3.value_or(preset.density_g_cm3),
-              price_per_kg.value_or(preset.price_per_kg)};
-    }
+    if (!equal_in_any_case(preset.name, name)) continue;
+    Material material = preset;
+    material.density_g_cm3 = density_g_cm3.value_or(preset.density_g_cm3);
+    return priced(material);
   }
   throw UsageError("unknown material \"" + name + "\"",
                    "use one of " + material_names() + ", or give --density and --price");

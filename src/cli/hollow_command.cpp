@@ -149,9 +149,18 @@ struct HollowCommand {
         ->check(number_between({}, 100, "g/cm3"))
         ->type_name("G/CM3");
     command
-        .add_option("--price", price, "Price of a kilogram in your currency (default that of the material)")
-        ->check(number_between(0.0, 1e9, "a kg"))
+        .add_option(
+            "--price", price,
+            "Price of a kilogram, or as --price-per says, in your currency (default that of the material)")
+        ->check(number_between(0.0, 1e9, ""))
         ->type_name("PRICE");
+    command
+        .add_option("--price-per", price_per,
+                    "What --price buys: a kg, or a l of what is printed (as resin is sold)")
+        ->check(CLI::IsMember({"kg", "l"}))
+        ->needs("--price")
+        ->type_name("UNIT")
+        ->capture_default_str();
   }
 
   // The one target that was given, if any.
@@ -190,6 +199,8 @@ struct HollowCommand {
     options.print = print.settings(options.packing.process.process);
     options.infill_is_known = print.knows_infill();
     // Modifiers leave the model solid: nothing is trapped in them.
+    if (options.modifiers && !drainage.plugs().empty())
+      throw UsageError("--as modifiers leaves no holes that --plugs could close", "leave out one of them");
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
     if (options.modifiers) {
@@ -201,8 +212,9 @@ struct HollowCommand {
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
-    options.material = choose_material(material.empty() ? options.packing.process.process.material : material,
-                                       density, price);
+    options.material =
+        choose_material(material.empty() ? options.packing.process.process.material : material, density,
+                        price, price_per == "l" ? PriceUnit::litre : PriceUnit::kilogram);
     options.target = target(options);
     options.heavier = print.heavier();
     return options;
@@ -299,6 +311,7 @@ struct HollowCommand {
   std::optional<double> target_saving;
   std::optional<double> density;
   std::optional<double> price;
+  std::string price_per = "kg";
 };
 
 }  // namespace

@@ -127,6 +127,8 @@ Json material_of(const HollowReport& report) {
   return {{"name", report.material.name},
           {"density_g_cm3", report.material.density_g_cm3},
           {"price_per_kg", report.material.price_per_kg},
+          {"price_per_litre", report.material.price_per_litre()},
+          {"priced_per", report.material.priced_per == PriceUnit::litre ? "l" : "kg"},
           {"assumes", use.predicted ? "the predicted filament" : "solid material (100 % infill)"},
           {"mass_before_g", use.mass_before_g},
           {"mass_after_g", use.mass_after_g},

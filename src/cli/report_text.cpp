@@ -283,8 +283,11 @@ void add_target(Lines& lines, const HollowReport& report) {
 
 void add_material(Lines& lines, const HollowReport& report) {
   const MaterialUse use = material_use(report);
+  const Material& material = report.material;
   const std::string figures =
-      fmt::format("{:g} g/cm3 and {:g} a kg", report.material.density_g_cm3, report.material.price_per_kg);
+      material.priced_per == PriceUnit::litre
+          ? fmt::format("{:g} g/cm3 and {:g} a litre", material.density_g_cm3, material.price_per_litre())
+          : fmt::format("{:g} g/cm3 and {:g} a kg", material.density_g_cm3, material.price_per_kg);
   if (report.modifiers) {
     // Infill that the slicer makes solid for other reasons (under a top, over a bottom) stays.
     lines.add("material",

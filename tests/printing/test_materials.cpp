@@ -41,5 +41,17 @@ TEST(Materials, FiguresCanBeOverridden) {
   EXPECT_TRUE(contains(message_of<UsageError>([] { choose_material("oak", 0.7, {}); }), "PLA"));
 }
 
+TEST(Materials, APriceMayBeThatOfALitre) {
+  const Material resin = choose_material("resin", {}, 60, PriceUnit::litre);
+  EXPECT_DOUBLE_EQ(resin.price_per_litre(), 60);
+  EXPECT_DOUBLE_EQ(resin.price_per_kg * resin.density_g_cm3, 60);
+  EXPECT_EQ(resin.priced_per, PriceUnit::litre);
+  // The density that was given counts, of a material of its own too.
+  EXPECT_DOUBLE_EQ(choose_material("resin", 1.2, 60, PriceUnit::litre).price_per_kg, 50);
+  EXPECT_DOUBLE_EQ(choose_material("wax", 0.9, 90, PriceUnit::litre).price_per_kg, 100);
+  EXPECT_DOUBLE_EQ(choose_material("wax", 0.9, 90).price_per_litre(), 81);
+  EXPECT_EQ(choose_material("resin").priced_per, PriceUnit::kilogram);
+}
+
 }  // namespace
 }  // namespace aerate
