@@ -10,7 +10,7 @@
 namespace aerate {
 
 SolidFormat solid_format_of(const HollowOptions& options) {
-  const SolidFormat format{&format_to_write(options.output), options.modifiers, options.object_name};
+  SolidFormat format{&format_to_write(options.output), options.modifiers, options.object_name};
   if (format.modifiers && format.mesh != &MeshFormat::three_mf) {
     throw UsageError(fmt::format("{}: modifiers need a 3MF file", options.output.string()),
                      "give a name that ends in .3mf, or leave out --as modifiers");

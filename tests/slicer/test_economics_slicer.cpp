@@ -104,7 +104,8 @@ class EconomicsSlicer : public testing::Test {
 TEST_F(EconomicsSlicer, ABlockThatIsPrintedSolidAndSparse) {
   const auto block = folder_.path() / "block.stl";
   write_mesh(make_box({0, 0, 0}, {26, 26, 26}), block, MeshFormat::stl);
-  expect_as_predicted(block, {"--shape", "spheres", "--min-radius", "1.5", "--max-radius", "8"}, {"100%", "20%"});
+  expect_as_predicted(block, {"--shape", "spheres", "--min-radius", "1.5", "--max-radius", "8"},
+                      {"100%", "20%"});
   // Sparse prints of cells, which would be refused, are heavier by more than a tenth beyond the prediction.
   expect_as_predicted(block, {"--shape", "cells", "--min-radius", "1.5", "--max-radius", "8"}, {"100%"});
 }
