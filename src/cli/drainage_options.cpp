@@ -36,22 +36,12 @@ std::optional<Vec3d> parse_side(std::string_view text, Vec3d up) {
   return parse_direction(text);
 }
 
-std::optional<double> parse_after(std::string_view text, std::string_view prefix) {
+// What follows a prefix, parsed.
+template <typename Parse>
+auto parse_after(std::string_view text, std::string_view prefix, const Parse& parse)
+    -> decltype(parse(text)) {
   if (!text.starts_with(prefix)) return std::nullopt;
-  return parse_number(text.substr(prefix.size()));
-}
-
-// "box:x0,y0,z0,x1,y1,z1"
-std::optional<Box3d> parse_box(std::string_view text) {
-  constexpr std::string_view kPrefix = "box:";
-  if (!text.starts_with(kPrefix)) return std::nullopt;
-  text.remove_prefix(kPrefix.size());
-  std::size_t comma = 0;
-  for (int i = 0; i < 3 && comma != std::string_view::npos; ++i) comma = text.find(',', comma + (i > 0));
-  if (comma == std::string_view::npos) return std::nullopt;
-  const auto a = parse_point(text.substr(0, comma)), b = parse_point(text.substr(comma + 1));
-  if (!a || !b) return std::nullopt;
-  return Box3d{min_of(*a, *b), max_of(*a, *b)};
+  return parse(text.substr(prefix.size()));
 }
 
 }  // namespace
@@ -130,11 +120,11 @@ HoleSides DrainageOptions::sides(Vec3d up) const {
   for (const std::string& text : not_on_) {
     if (const auto side = parse_side(text, up))
       sides.not_on.push_back(*side);
-    else if (const auto above = parse_after(text, "above:"))
+    else if (const auto above = parse_after(text, "above:", parse_number))
       sides.not_above = std::min(sides.not_above, *above);
-    else if (const auto below = parse_after(text, "below:"))
+    else if (const auto below = parse_after(text, "below:", parse_number))
       sides.not_below = std::max(sides.not_below, *below);
-    else if (const auto box = parse_box(text))
+    else if (const auto box = parse_after(text, "box:", parse_box))
       sides.not_within.push_back(*box);
     else
       throw UsageError(

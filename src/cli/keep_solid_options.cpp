@@ -1,5 +1,6 @@
 #include "cli/keep_solid_options.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,39 +14,31 @@ namespace {
 // Beyond what is printed (mm), where single precision is coarse.
 constexpr double kFarthest = 1e6;
 
-// Just so many numbers with commas between them.
+// As parse_numbers, none of them farther out.
 template <std::size_t kCount>
-std::optional<std::array<double, kCount>> parse_numbers(std::string_view text) {
-  std::array<double, kCount> numbers{};
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const std::size_t comma = text.find(',');
-    const bool is_last = i + 1 == kCount;
-    if ((comma == std::string_view::npos) != is_last) return std::nullopt;
-    const auto number = parse_number(text.substr(0, comma));
-    if (!number || std::abs(*number) > kFarthest) return std::nullopt;
-    numbers[i] = *number;
-    text.remove_prefix(is_last ? text.size() : comma + 1);
-  }
-  return numbers;
+std::optional<std::array<double, kCount>> parse_near(std::string_view text) {
+  const auto numbers = parse_numbers<kCount>(text);
+  if (!numbers) return std::nullopt;
+  const bool is_near = std::ranges::all_of(*numbers, [](double x) { return std::abs(x) <= kFarthest; });
+  return is_near ? numbers : std::nullopt;
 }
 
-std::optional<RegionRequest> parse_box(const std::string& text, std::string_view numbers) {
-  const auto n = parse_numbers<6>(numbers);
-  if (!n) return std::nullopt;
-  const auto& [x0, y0, z0, x1, y1, z1] = *n;
-  if (x0 == x1 || y0 == y1 || z0 == z1) return std::nullopt;
-  return RegionRequest{text, Box3d{min_of(Vec3d{x0, y0, z0}, Vec3d{x1, y1, z1}),
-                                   max_of(Vec3d{x0, y0, z0}, Vec3d{x1, y1, z1})}};
+std::optional<RegionRequest> parse_box_region(const std::string& text, std::string_view numbers) {
+  const auto box = parse_near<6>(numbers) ? parse_box(numbers) : std::nullopt;
+  if (!box) return std::nullopt;
+  const Vec3d size = box->upper - box->lower;
+  if (!(size.x > 0 && size.y > 0 && size.z > 0)) return std::nullopt;
+  return RegionRequest{text, *box};
 }
 
 std::optional<RegionRequest> parse_ball(const std::string& text, std::string_view numbers) {
-  const auto n = parse_numbers<4>(numbers);
+  const auto n = parse_near<4>(numbers);
   if (!n || (*n)[3] <= 0) return std::nullopt;
   return RegionRequest{text, BallRegion{{(*n)[0], (*n)[1], (*n)[2]}, (*n)[3]}};
 }
 
 std::optional<RegionRequest> parse_cylinder(const std::string& text, std::string_view numbers) {
-  const auto n = parse_numbers<7>(numbers);
+  const auto n = parse_near<7>(numbers);
   if (!n || (*n)[6] <= 0) return std::nullopt;
   const CylinderRegion region{{(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}, (*n)[6]};
   if (!(length(region.end - region.start) > 0)) return std::nullopt;
@@ -56,7 +49,7 @@ struct Body {
   std::string_view prefix;
   std::optional<RegionRequest> (*parse)(const std::string& text, std::string_view numbers);
 };
-constexpr std::array kBodies{Body{"box:", parse_box}, Body{"sphere:", parse_ball},
+constexpr std::array kBodies{Body{"box:", parse_box_region}, Body{"sphere:", parse_ball},
                              Body{"cylinder:", parse_cylinder}};
 
 }  // namespace

@@ -15,13 +15,16 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 std::optional<Vec3d> parse_point(std::string_view text) {
-  const std::size_t first = text.find(','), second = text.find(',', first + 1);
-  if (first == std::string_view::npos || second == std::string_view::npos) return std::nullopt;
-  const auto x = parse_number(text.substr(0, first));
-  const auto y = parse_number(text.substr(first + 1, second - first - 1));
-  const auto z = parse_number(text.substr(second + 1));
-  if (!x || !y || !z) return std::nullopt;
-  return Vec3d{*x, *y, *z};
+  const auto n = parse_numbers<3>(text);
+  if (!n) return std::nullopt;
+  return Vec3d{(*n)[0], (*n)[1], (*n)[2]};
+}
+
+std::optional<Box3d> parse_box(std::string_view text) {
+  const auto n = parse_numbers<6>(text);
+  if (!n) return std::nullopt;
+  const Vec3d a{(*n)[0], (*n)[1], (*n)[2]}, b{(*n)[3], (*n)[4], (*n)[5]};
+  return Box3d{min_of(a, b), max_of(a, b)};
 }
 
 std::optional<Vec3d> parse_direction(std::string_view text) {

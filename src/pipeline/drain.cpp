@@ -35,8 +35,8 @@ const SurfaceIndex* kept_in(const PreparedModel& model) {
   return model.kept ? &model.kept->within : nullptr;
 }
 
-// Of the voids' volume: for more than this, holes may open onto the build plate.
-constexpr double kMuchLost = 0.03;
+// Of the voids' volume: so much it is worth that no hole opens onto the build plate.
+constexpr double kWorthOfPlate = 0.03;
 
 // By this factor the tolerance is loosened, so many times at most.
 constexpr double kLooser = 1.25;
@@ -207,7 +207,6 @@ double lowest_along(const Mesh& mesh, Vec3d up) {
 // How good a plan is, the less the better: the share of the voids' volume that is not made, and what its holes are worth.
 double cost_of(const DrainedVoids& drained) {
   constexpr double kWorthOfHole = 0.005;  // beyond the two of each network
-  constexpr double kWorthOfPlate = 0.03;  // that no hole is closed by it
   const double all = drained.plan.pools.total + drained.dropped.volume;
   const double needed = 2 * static_cast<double>(drained.plan.network_count);
   const double more = static_cast<double>(drained.plan.holes.size()) - needed;
@@ -227,19 +226,19 @@ auto best_drained(const DrainageRequest& asked, const DrainedUnder& drained_unde
   low.worth_of_hiding = kLowRatherThanHidden;
   std::optional<decltype(drained_under(asked))> best;
   const auto cost = [&] { return best ? cost_of(voids_of(*best)) : kInfinity; };
-  const auto try_plan = [&](const DrainageRequest& request, bool is_last) {
+  const auto try_plan = [&](const DrainageRequest& request) {
     try {
       auto drained = drained_under(request);
       if (cost_of(voids_of(drained)) < cost()) best = std::move(drained);
     } catch (const NothingToRemoveError&) {
-      if (is_last && !best) throw;
+      if (&request == &asked && !best) throw;
     }
   };
   const bool is_all_asked_for = asked.escape_holes.size() >= 2;
-  if (!is_all_asked_for) try_plan(hidden, false);
+  if (!is_all_asked_for) try_plan(hidden);
   // That loses holes, not voids.
-  if (cost() > kLittle && cost() <= kMuchLost) try_plan(low, false);
-  if (cost() > kMuchLost) try_plan(asked, true);
+  if (cost() > kLittle && cost() <= kWorthOfPlate) try_plan(low);
+  if (cost() > kWorthOfPlate) try_plan(asked);
   return std::move(*best);
 }
 
