@@ -166,6 +166,10 @@ HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
   options.drainage = drainage_request(options.packing.process, escape_holes());
   options.drainage->sides = sides(choice.direction.up);
   options.build = build_.build();
+  const Limits& limits = options.packing.process.process.limits;
+  const auto cup = limits.find(Limit::cup);
+  if (options.build == Build::hanging && cup != limits.end())
+    options.drainage->widest_cup = cup->second.value;
   return with_plugs_asked_for(std::move(options));
 }
 

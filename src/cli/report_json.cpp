@@ -188,6 +188,8 @@ const char* name_of(HolePurpose purpose) {
       return "drain";
     case HolePurpose::pool:
       return "pool";
+    case HolePurpose::cup:
+      return "cup";
   }
   return "";
 }

@@ -185,6 +185,10 @@ void add_drainage(Lines& lines, const HollowReport& report) {
   if (for_pools > 0)
     lines.add("", "{} of them for pools that would stay, beyond the two of each group of voids ({})",
               for_pools, count_of(plan.network_count, "group", "groups"));
+  const auto for_cups = std::ranges::count(plan.holes, HolePurpose::cup, &EscapeHole::purpose);
+  if (for_cups > 0)
+    lines.add("", "{} of them where a layer would close in more than {:g} mm2", for_cups,
+              drainage.request.widest_cup);
   add_pools(lines, "", plan.pools, report.build);
   if (drainage.dropped.count() > 0)
     lines.add("", "{} that cannot be drained not made ({:.1f} mm3)",

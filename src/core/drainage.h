@@ -37,6 +37,8 @@ struct DrainageRequest {
   bool avoids_plate = false;  // none of these opens onto the build plate
   // Of the height of what is opened, so much is given for a place that does not show at all.
   double worth_of_hiding = 0.25;
+  // Holes and windows are added where a layer would close in more than this, mm2.
+  double widest_cup = std::numeric_limits<double>::infinity();
 };
 
 // A straight round tube about the axis from `start` to `end`.
@@ -59,6 +61,7 @@ enum class HolePurpose {
   asked,  // it was asked for there
   drain,  // one of the two that each network needs
   pool,   // more would stay without it than may
+  cup,    // a layer of the print would close in more without it than may
 };
 
 // A way out of a void. All of it that is outside the ball lies beyond `tube.start`; its axis meets the
@@ -85,6 +88,8 @@ struct DrainagePlan {
   std::vector<EscapeHole> holes;  // at least two for each network
   std::size_t network_count = 0;  // sets of voids that channels join
   TrappedPools pools;
+  // What a layer of the print closes in at most, planned, mm2.
+  double widest_cup = 0;
 };
 
 // Share of its radius by which the side of a tube may pass a ball's centre at most: beyond, their

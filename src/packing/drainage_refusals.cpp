@@ -4,6 +4,13 @@
 #include <vector>
 
 namespace aerate {
+namespace {
+
+std::string more_sides(const DrainageRequest& request) {
+  return request.sides.is_anywhere() ? "" : "allow more sides with --holes-on and --holes-not-on, ";
+}
+
+}  // namespace
 
 std::string narrower_holes(const DrainageRequest& request) {
   if (request.hole_radius > request.channel_radius)
@@ -50,11 +57,9 @@ NothingToRemoveError nothing_is_opened(const DrainageRequest& request, const std
   return NothingToRemoveError(
       fmt::format("no place was found for two escape holes of {:g} mm, so no void can drain",
                   2 * request.hole_radius),
-      request.escape_holes.empty()
-          ? (request.sides.is_anywhere() ? "" : "allow more sides with --holes-on and --holes-not-on, ") +
-                ("give " + narrower_holes(request)) + ", larger voids, or places with --escape-hole" +
-                other_way
-          : "ask for other places, or leave --escape-hole out");
+      request.escape_holes.empty() ? more_sides(request) + ("give " + narrower_holes(request)) +
+                                         ", larger voids, or places with --escape-hole" + other_way
+                                   : "ask for other places, or leave --escape-hole out");
 }
 
 NothingToRemoveError all_stays_full(const DrainageRequest& request, const std::string& other_way) {
@@ -62,7 +67,8 @@ NothingToRemoveError all_stays_full(const DrainageRequest& request, const std::s
       fmt::format("more than {:g} % of every group of voids would stay full, in print orientation and upside "
                   "down",
                   100 * kPoolsAimedAt),
-      "give other places with --escape-hole, " + narrower_holes(request) + ", or larger voids" + other_way);
+      more_sides(request) + "give other places with --escape-hole, " + narrower_holes(request) +
+          ", or larger voids" + other_way);
 }
 
 }  // namespace aerate

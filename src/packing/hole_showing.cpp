@@ -94,7 +94,12 @@ void describe_holes(std::vector<EscapeHole>& holes, const DrainageRequest& reque
     });
     const bool is_needed = ++count[hole.network] <= kNeeded;
     hole.shows = showing.of(hole.tube);
-    hole.purpose = is_asked ? HolePurpose::asked : is_needed ? HolePurpose::drain : HolePurpose::pool;
+    if (is_asked)
+      hole.purpose = HolePurpose::asked;
+    else if (is_needed)
+      hole.purpose = HolePurpose::drain;
+    else if (hole.purpose != HolePurpose::cup)
+      hole.purpose = HolePurpose::pool;
   }
 }
 

@@ -36,7 +36,7 @@ class HoleShowing {
 };
 
 // Says of the holes of a plan how much they show and what they are for: those at places that were asked for; the first two
-// of each network; and what was added to these for pools.
+// of each network; and what was added to these for pools, unless that says that it is for a cup.
 void describe_holes(std::vector<EscapeHole>& holes, const DrainageRequest& request,
                     const HoleShowing& showing);
 

@@ -48,6 +48,12 @@ Members reached_by(const std::vector<FloodStep>& steps, const Members& members) 
   return reached;
 }
 
+// A hole that lets out what runs in a direction; or, where only some sides may have any, the other way.
+bool open_towards(DrainageTask& task, Draft& draft, const Members& voids, Vec3d down) {
+  return open(task, draft, voids, down) ||
+         (!task.request.sides.is_anywhere() && open(task, draft, voids, -down));
+}
+
 // Opens a network below and above, before channels take the room for it: at voids from which most of it can
 // be reached. Without a hole if there is no place below.
 Draft open_network(DrainageTask& task, const Draft& draft, const Members& members) {
@@ -59,8 +65,8 @@ Draft open_network(DrainageTask& task, const Draft& draft, const Members& member
   double most = 0;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     Draft opened = draft;
-    if (!is_asked_for_below && !open(task, opened, candidates, -task.up())) break;
-    if (hole_count(opened, network) < 2) open(task, opened, candidates, task.up());
+    if (!is_asked_for_below && !open_towards(task, opened, candidates, -task.up())) break;
+    if (hole_count(opened, network) < 2) open_towards(task, opened, candidates, task.up());
     Draft joined = opened;
     const std::vector<FloodStep> steps = join_voids(task, joined);
     const double volume = volume_of(task, reached_by(steps, members));
@@ -157,7 +163,7 @@ Draft open_and_join(DrainageTask& task, Draft draft) {
     draft.tubes.remove_tubes_of(is_unreached);
     if (hole_count(draft, n) == 0) continue;
     const Members reached = reached_by(steps, networks[n]);
-    if (hole_count(draft, n) >= 2 || open(task, draft, reached, task.up())) {
+    if (hole_count(draft, n) >= 2 || open_towards(task, draft, reached, task.up())) {
       Members unreached = networks[n];
       std::erase_if(unreached, [&](std::uint32_t i) { return !is_unreached(i); });
       leave_out(task, draft, unreached, &UndrainedVoids::unreached);

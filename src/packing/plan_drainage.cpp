@@ -39,6 +39,7 @@ PlannedDrainage plan_drainage(const DrainableModel& model, const Packing& packin
   draft = leave_out_pools(task, std::move(draft));
   if (draft.tubes.plan().holes.empty()) throw all_stays_full(request);
   PlannedDrainage result = planned(task, draft);
+  result.plan.widest_cup = widest_cup(task.voids, draft.tubes.plan());
   describe_holes(result.plan.holes, request, task.places.showing());
   return result;
 }

@@ -226,4 +226,16 @@ TrappedPools trapped_pools(std::span<const VoidShape> voids, const DrainagePlan&
   return pools;
 }
 
+double widest_cup(std::span<const VoidShape> voids, const DrainagePlan& plan) {
+  const SpillHeights spills = spill_heights(voids, plan, plan.roof.up);
+  double widest = 0;
+  for (std::size_t i = 0; i < voids.size(); ++i) {
+    if (spills.height[i] == kInfinity) continue;
+    const double radius = voids[i].radius();
+    const double below = std::clamp(dot(voids[i].centre(), plan.roof.up) - spills.height[i], 0.0, radius);
+    widest = std::max(widest, std::numbers::pi * (radius * radius - below * below));
+  }
+  return widest;
+}
+
 }  // namespace aerate

@@ -55,4 +55,7 @@ std::uint32_t fullest_branch(std::span<const VoidShape> voids, const DrainagePla
 // in a channel is counted at both of its ends.
 TrappedPools trapped_pools(std::span<const VoidShape> voids, const DrainagePlan& plan);
 
+// Of a void below its spill height, seen from above, the widest of all: what a layer of the print closes in, mm2.
+double widest_cup(std::span<const VoidShape> voids, const DrainagePlan& plan);
+
 }  // namespace aerate

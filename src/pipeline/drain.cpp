@@ -38,6 +38,9 @@ const SurfaceIndex* kept_in(const PreparedModel& model) {
 // Of the voids' volume: so much it is worth that no hole opens onto the build plate.
 constexpr double kWorthOfPlate = 0.03;
 
+// Of the voids' volume: so much it is worth that no layer sucks at more than may be.
+constexpr double kWorthOfSuction = 0.1;
+
 // By this factor the tolerance is loosened, so many times at most.
 constexpr double kLooser = 1.25;
 constexpr int kMostTries = 12;
@@ -204,13 +207,14 @@ double lowest_along(const Mesh& mesh, Vec3d up) {
   return lowest;
 }
 
-// How good a plan is, the less the better: the share of the voids' volume that is not made, and what its holes are worth.
+// How good a plan is, the less the better: the share of the voids' volume that is not made, and what its holes and what is sucked at are worth.
 double cost_of(const DrainedVoids& drained) {
   constexpr double kWorthOfHole = 0.005;  // beyond the two of each network
   const double all = drained.plan.pools.total + drained.dropped.volume;
   const double needed = 2 * static_cast<double>(drained.plan.network_count);
   const double more = static_cast<double>(drained.plan.holes.size()) - needed;
-  return drained.dropped.volume / all + kWorthOfHole * more +
+  const double suction = std::max(0.0, 1 - drained.request.widest_cup / drained.plan.widest_cup);
+  return drained.dropped.volume / all + kWorthOfHole * more + kWorthOfSuction * suction +
          (drained.request.avoids_plate ? 0 : kWorthOfPlate);
 }
 

@@ -210,6 +210,95 @@ TEST(DrainageOptions, TheReportInWords) {
     EXPECT_TRUE(contains(result.out, part));
 }
 
+// Where the escape holes of a result come out, mm.
+std::vector<Vec3d> places_of(const Json& report) {
+  std::vector<Vec3d> places;
+  for (const Json& hole : report.at("drainage").at("holes")) {
+    const Json& at = hole.at("place_mm");
+    places.push_back({at[0].get<double>(), at[1].get<double>(), at[2].get<double>()});
+  }
+  return places;
+}
+
+class HolesOn : public ::testing::TestWithParam<const char*> {
+ protected:
+  std::vector<Vec3d> holes_with(std::vector<std::string> options) const {
+    options.insert(options.end(), {"--process", "sla", "--shape", GetParam()});
+    const Json report = json_of(job_.hollow(job_.input("block.stl", block_of_50()), options));
+    const std::vector<Vec3d> places = report.is_null() ? std::vector<Vec3d>{} : places_of(report);
+    EXPECT_GE(places.size(), 2U);
+    return places;
+  }
+
+ private:
+  Job job_;
+};
+
+INSTANTIATE_TEST_SUITE_P(BothShapes, HolesOn, ::testing::Values("spheres", "cells"));
+
+constexpr double kOnFace = 1e-3;  // mm
+
+TEST_P(HolesOn, TheSidesAskedFor) {
+  for (const Vec3d p : holes_with({"--holes-on", "left"})) EXPECT_NEAR(p.x, 0, kOnFace);
+  for (const Vec3d p : holes_with({"--holes-on", "0,1,0"})) EXPECT_NEAR(p.y, 40, kOnFace);
+  for (const Vec3d p : holes_with({"--holes-on", "right", "--holes-on", "front"}))
+    EXPECT_TRUE(std::abs(p.x - 50) < kOnFace || std::abs(p.y) < kOnFace) << p.x << " " << p.y;
+}
+
+TEST_P(HolesOn, NotWhereTheyMayNot) {
+  for (const Vec3d p :
+       holes_with({"--holes-not-on", "left", "--holes-not-on", "right", "--holes-not-on", "top"}))
+    EXPECT_TRUE(std::abs(p.y) < kOnFace || std::abs(p.y - 40) < kOnFace || std::abs(p.z) < kOnFace);
+  // All of the block's back half.
+  for (const Vec3d p : holes_with({"--holes-not-on", "box:-1,20,-1,51,41,41"})) EXPECT_LT(p.y, 20);
+}
+
+TEST_P(HolesOn, TopAndBottomAreThoseOfThePrint) {
+  for (const Vec3d p : holes_with({"--up", "+x", "--holes-not-on", "above:20"})) EXPECT_LE(p.x, 20);
+}
+
+// Channels of spheres do not let out there what windows of cells do.
+class HolesOfCellsOn : public HolesOn {};
+INSTANTIATE_TEST_SUITE_P(Cells, HolesOfCellsOn, ::testing::Values("cells"));
+
+TEST_P(HolesOfCellsOn, AreAllOnTopOrAllHalfWayUp) {
+  for (const Vec3d p : holes_with({"--up", "+x", "--holes-on", "top"})) EXPECT_NEAR(p.x, 50, kOnFace);
+  for (const Vec3d p : holes_with({"--holes-not-on", "above:22", "--holes-not-on", "below:8"})) {
+    EXPECT_LE(p.z, 22);
+    EXPECT_GE(p.z, 8);
+  }
+}
+
+// They do not come out onto the plate of their own accord.
+TEST_P(HolesOn, ThePlateOnlyWhereAsked) {
+  for (const Vec3d p : holes_with({})) EXPECT_GT(p.z, 0.3);
+  const Job job;
+  const ProcessResult result =
+      run(job.hollow(job.input("block.stl", block_of_50()),
+                     {"--process", "sla", "--shape", GetParam(), "--holes-on", "bottom"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "onto the build plate")) << result.err;
+}
+
+TEST_P(HolesOn, ASideThatTheModelLacks) {
+  expect_refused(Job(), {"--process", "sla", "--shape", GetParam(), "--holes-on", "1,1,1"}, kNothingToRemove,
+                 {"--holes-on"});
+}
+
+TEST(DrainageOptions, HolesSayWhatTheyAreForAndHowMuchTheyShow) {
+  const Job job;
+  const auto model = job.input("block.stl", block_of_50());
+  const Json report =
+      json_of(job.hollow(model, {"--process", "sla", "--escape-hole", "25,20,40", "--holes-on", "bottom"}));
+  const Json& holes = report["drainage"]["holes"];
+  ASSERT_GE(holes.size(), 2U);
+  EXPECT_EQ(holes[0]["purpose"], "asked");
+  EXPECT_EQ(holes[1]["purpose"], "drain");
+  // The sky lights a flat top whole (views from the back count less), a bottom counts a third.
+  EXPECT_NEAR(holes[0]["shows_percent"].get<double>(), 98, 3);
+  EXPECT_NEAR(holes[1]["shows_percent"].get<double>(), 33, 2);
+}
+
 TEST(DrainageOptions, WrongInput) {
   const Job job;
   const std::vector<std::string> sla{"--process", "sla"};

@@ -177,6 +177,33 @@ TEST(CellDrainage, WhereNoHoleOpensTheNearestPlaceIsSaid) {
   EXPECT_TRUE(contains(far_away, "--hole-diameter"));
 }
 
+// Of three boxes the one in the middle begins 10 mm higher. One of the others drains by a hole in its floor; what of the last is below
+// its window each layer closes in, and at the window's sill, which is that of the other window too, the floor of the middle one with it.
+TEST(CellDrainage, WhereALayerWouldCloseInTooMuchAHoleIsAdded) {
+  std::vector<Box> boxes = equal_boxes(3, 19.5);
+  boxes[1].lower.z = 12;
+  const Mesh model = block_round(boxes);
+  const CellVoids cells = row_of(boxes);
+  const PlannedCellDrainage usual = plan(model, cells);
+  ASSERT_EQ(usual.plan.holes.size(), 2U);
+  EXPECT_NEAR(usual.plan.widest_cup, 2 * 19.5 * 20, 0.02 * 19.5 * 20);
+  DrainageRequest request = request_of();
+  request.widest_cup = 100;
+  const PlannedCellDrainage planned = plan(model, cells, request, limits_of());
+  expect_sound(model, cells, planned, boxes);
+  ASSERT_EQ(planned.plan.holes.size(), 3U);
+  EXPECT_EQ(planned.plan.holes[2].purpose, HolePurpose::cup);
+  EXPECT_NE(planned.plan.holes[2].from, planned.plan.holes[0].from);
+  EXPECT_NEAR(planned.plan.holes[2].tube.end.z, 0, 1e-6);
+  EXPECT_LE(planned.plan.widest_cup, 100);
+  // What is allowed adds nothing, nor does what no hole can be cut for.
+  request.widest_cup = 800;
+  EXPECT_EQ(plan(model, cells, request, limits_of()).plan.holes.size(), 2U);
+  request.widest_cup = 100;
+  const CanOpenCell only_first = [](const Tube&, std::uint32_t from) { return from == 0; };
+  EXPECT_EQ(plan(model, cells, request, limits_of(), only_first).plan.holes.size(), 2U);
+}
+
 TEST(CellDrainage, HolesThatCannotBeCutAreNotMade) {
   const std::vector<Box> boxes = equal_boxes(2, 19.5);
   const Mesh model = block_round(boxes);

@@ -30,9 +30,11 @@ PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVo
     draft = open_pools(task, std::move(draft));
     draft = add_windows_for_pools(task, std::move(draft));
   }
+  draft = open_cups(task, std::move(draft));
   draft = leave_out_pools(task, std::move(draft));
   if (draft.holes.empty()) throw all_stays_full(request, kOrSpheres);
   PlannedCellDrainage result = planned(task, draft);
+  result.plan.widest_cup = widest_cup(task, draft);
   describe_holes(result.plan.holes, request, task.places.front().showing());
   return result;
 }

@@ -220,7 +220,7 @@ PlannedCellDrainage planned(const CellDrainageTask& task, const CellDraft& draft
   }
   for (const auto& hole : draft.holes) {
     const std::uint32_t from = hole->hole.from;
-    result.plan.holes.push_back({renumbered[from], hole->hole.tube, part_of[from]});
+    result.plan.holes.push_back({renumbered[from], hole->hole.tube, part_of[from], hole->hole.purpose});
   }
   result.plan.network_count = parts.size();
   result.plan.pools = pools_of(task, draft);

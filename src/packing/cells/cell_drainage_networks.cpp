@@ -88,6 +88,12 @@ bool open_above(CellDrainageTask& task, CellDraft& draft, const CellMembers& voi
   return open_voids(task, draft, voids, kUpsideDown) || open_voids(task, draft, voids, kUpright);
 }
 
+// A hole low down; or, where only some sides may have any, wherever there is a place.
+bool open_below(CellDrainageTask& task, CellDraft& draft, const CellMembers& voids) {
+  return open_voids(task, draft, voids, kUpright) ||
+         (!task.request.sides.is_anywhere() && open_voids(task, draft, voids, kUpsideDown));
+}
+
 // Opens a network below and above and joins its voids, where most of them are reached. Without holes if there
 // are no places for two.
 CellDraft open_network(CellDrainageTask& task, const CellDraft& draft, const CellMembers& members) {
@@ -97,7 +103,7 @@ CellDraft open_network(CellDrainageTask& task, const CellDraft& draft, const Cel
   double most = 0;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     CellDraft opened = draft;
-    if (!is_asked_for_below && !open_voids(task, opened, candidates, kUpright)) break;
+    if (!is_asked_for_below && !open_below(task, opened, candidates)) break;
     const std::uint32_t low = opened.holes.back()->hole.from;
     const bool needs_high = holes_of(opened, members).size() < 2;
     const bool has_high = needs_high && open_voids(task, opened, members, kUpsideDown);

@@ -170,6 +170,13 @@ std::optional<CellDraft> without_fullest(CellDrainageTask& task, const CellDraft
 
 }  // namespace
 
+CellDraft with_windows_that_lower(const CellDrainageTask& task, const CellDraft& draft,
+                                  std::size_t orientation) {
+  std::vector<char> is_wanted(task.windows.size(), 0);
+  mark_ways(task, draft, orientation, is_wanted);
+  return with_wanted(task, draft, is_wanted);
+}
+
 CellDraft add_windows_for_pools(CellDrainageTask& task, CellDraft draft) {
   const std::size_t first = draft.windows.size();
   for (int round = 0; round < kMostRoundsOfWindows; ++round) {

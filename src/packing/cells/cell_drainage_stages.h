@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "packing/cells/cell_drainage_draft.h"
 
 // Each takes a draft and gives the next.
@@ -25,6 +27,14 @@ CellDraft add_windows_for_pools(CellDrainageTask& task, CellDraft draft);
 
 // More holes for the largest pools.
 CellDraft open_pools(CellDrainageTask& task, CellDraft draft);
+
+// More windows and holes for the widest cups, while these are wider than the request allows; and how wide they are, mm2.
+CellDraft open_cups(CellDrainageTask& task, CellDraft draft);
+double widest_cup(const CellDrainageTask& task, const CellDraft& draft);
+
+// All windows that are clear of what is placed and by which hollows drain lower in an orientation.
+CellDraft with_windows_that_lower(const CellDrainageTask& task, const CellDraft& draft,
+                                  std::size_t orientation);
 
 // Leaves out voids that would stay full, until little stays.
 CellDraft leave_out_pools(CellDrainageTask& task, CellDraft draft);
