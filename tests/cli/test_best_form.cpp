@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/cli/job.h"
+#include "tests/support/blocks.h"
 
 // What voids are where the command line does not say.
 namespace aerate::test {
@@ -72,12 +73,21 @@ TEST(BestForm, HasLargerCellsWhereThatSavesHoles) {
   EXPECT_NE(unasked["notices"].dump().find("--shape cells --cell-size 21"), std::string::npos);
 }
 
+// Two legs of 40 mm, 12 mm thick and 30 mm wide.
+Mesh angle_of_12() {
+  return make_blocks({std::vector<float>{0, 12, 40}, {0, 30}, {0, 12, 40}},
+                     [](int x, int, int z) { return x == 0 || z == 0; });
+}
+
 // A smaller gap or wall, or a wider range of radii, is more freedom.
 TEST(BestForm, OfMoreFreedomRemovesNoLess) {
   const Job job;
   const std::vector<std::string> models{job.input("bar.stl", make_box({0, 0, 0}, {60, 10, 10})),
                                         job.input("plate.stl", make_box({0, 0, 0}, {40, 40, 12})),
-                                        job.input("cube.stl", block())};
+                                        job.input("cube.stl", block()),
+                                        job.input("ball.stl", make_uv_sphere(16, 24, 48)),
+                                        job.input("ring.stl", make_torus(20, 9, 48, 24)),
+                                        job.input("angle.stl", angle_of_12())};
   const std::vector<std::vector<std::string>> freer{
       {"--gap", "0.5"}, {"--gap", "0.8"}, {"--max-radius", "14"}, {"--min-radius", "2"}};
   for (const std::string& model : models) {
