@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -12,6 +15,7 @@
 #include "cli/form_options.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
+#include "cli/terminal.h"
 #include "core/error.h"
 #include "core/listed.h"
 #include "pipeline/hook.h"
@@ -44,6 +48,19 @@ std::string own_path() {
   return error ? std::string("aerate") : path.string();
 }
 
+// What was just thrown.
+Error caught_on_one_line() {
+  try {
+    throw;
+  } catch (const Error& error) {
+    return on_one_line(error);
+  } catch (const std::bad_alloc&) {
+    return FailureError("out of memory; the G-code is as it was");
+  } catch (const std::exception& error) {
+    return on_one_line(FailureError(error.what(), "this should not happen: please report it"));
+  }
+}
+
 struct HookCommand {
   HookCommand(CLI::App& command, const ConfigFile& config)
       : model(command, "--model",
@@ -51,6 +68,21 @@ struct HookCommand {
               "G-code is only annotated"),
         form(command, config),
         run_options(command) {
+    command
+        .add_option(
+            "--model-folder", model_folder,
+            "Where the model is looked for without --model: by the name of the object, which is in the "
+            "G-code if the slicer labels objects, else by that of the output")
+        ->excludes(command.get_option("--model"))
+        ->type_name("FOLDER");
+    command.add_flag(
+        "--strict", is_strict,
+        "Exit with an error where the print has to stay as it is; without it the reason becomes a comment "
+        "in the G-code, since slicers write none if a script fails");
+    command.add_flag(
+        "--name-saving", names_saving,
+        "Put what was saved into the name that the slicer's window gives the print (PrusaSlicer)");
+    command.add_option("--log", log, "Add the report to the end of this file")->type_name("FILE");
     command.add_option("FILE", gcode, "The G-code; slicers append it to the script's line")->type_name("");
     command
         .add_option("--print-setup", setup,
@@ -85,10 +117,42 @@ struct HookCommand {
     HookOptions options;
     options.gcode = gcode;
     options.request = form.request(model);
-    // Slicers show what a script writes to standard error as an error: notices go into the report alone.
-    JobFiles files{form.inputs(model), {options.gcode}};
-    run_reported(
-        run_options, files, [&](Monitor& monitor) { return run_hook(options, monitor); }, Verbosity::quiet);
+    options.model_folder = model_folder;
+    options.is_strict = is_strict;
+    options.names_saving = names_saving;
+    std::error_code unknown;
+    const bool is_there = std::filesystem::is_regular_file(options.gcode, unknown);
+    try {
+      run_logged(options);
+    } catch (...) {
+      const Error error = caught_on_one_line();
+      if (is_strict || !is_there || error.code() == ExitCode::interrupted) throw;
+      leave_print(error.what());
+    }
+  }
+
+ private:
+  // What it is that goes wrong, the print is there, and the slicer has to be told that it may take it.
+  void leave_print(const std::string& why) const {
+    const std::string line = fmt::format("the print stays as it is: {}", why);
+    print_note(line);
+    if (!log.empty()) append_to_log(line + '\n');
+  }
+
+  void append_to_log(const std::string& text) const {
+    std::ofstream file(log, std::ios::app | std::ios::binary);
+    file << text << std::flush;
+    if (!file) print_note(fmt::format("{}: the log cannot be written", log));
+  }
+
+  void run_logged(const HookOptions& options) const {
+    std::optional<HookReport> done;
+    const JobFiles files{form.inputs(model), {options.gcode}};
+    run_reported(run_options, files, [&](Monitor& monitor) {
+      done = run_hook(options, monitor);
+      return *done;
+    });
+    if (done && !log.empty()) append_to_log(to_text(*done));
   }
 
   ModelOptions model;
@@ -96,17 +160,17 @@ struct HookCommand {
   RunOptions run_options;
   std::string gcode;
   std::string setup;
+  std::string model_folder;
+  std::string log;
+  bool is_strict = false;
+  bool names_saving = false;
 };
 
 void run_for_slicer(const HookCommand& hook) {
   try {
     hook.run();
-  } catch (const Error& error) {
-    throw on_one_line(error);
-  } catch (const std::bad_alloc&) {
-    throw FailureError("out of memory; the G-code is as it was");
-  } catch (const std::exception& error) {
-    throw on_one_line(FailureError(error.what(), "this should not happen: please report it"));
+  } catch (...) {
+    throw caught_on_one_line();
   }
 }
 

@@ -86,7 +86,7 @@ void TerminalMonitor::progress(double fraction) {
 void TerminalMonitor::notice(std::string_view text) {
   if (verbosity_ == Verbosity::quiet) return;
   clear();
-  print_to_stderr(fmt::format("{} {}\n", toned("aerate: note:", Tone::notice), shown(text)));
+  print_note(text);
 }
 
 void TerminalMonitor::check_interrupted() {
@@ -130,6 +130,10 @@ void print_error(std::string_view what, std::string_view hint) {
   print_to_stderr(fmt::format("{} {}\n", toned("aerate: error:", Tone::error), shown(what)));
   if (hint.empty()) return;
   print_to_stderr(fmt::format("{} {}\n", toned("aerate: hint:", Tone::notice), shown(hint)));
+}
+
+void print_note(std::string_view text) {
+  print_to_stderr(fmt::format("{} {}\n", toned("aerate: note:", Tone::notice), shown(text)));
 }
 
 }  // namespace aerate::cli

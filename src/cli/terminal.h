@@ -50,4 +50,7 @@ void require_stdout_written();
 // "aerate: error: ..." and, if there is one, a line with the hint, on standard error.
 void print_error(std::string_view what, std::string_view hint);
 
+// "aerate: note: ..." there, as notices of a job are.
+void print_note(std::string_view text);
+
 }  // namespace aerate::cli

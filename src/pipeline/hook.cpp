@@ -13,6 +13,7 @@
 #include "files/output_file.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
+#include "pipeline/model_of_print.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/gcode_match.h"
 #include "printing/slicers/text_file.h"
@@ -170,6 +171,37 @@ std::string comments_for(const HookReport& report) {
   return text + std::string(kEnd);
 }
 
+// In one line, for a comment.
+std::string reason_of(const Error& error) {
+  return error.hint().empty() ? error.what() : fmt::format("{}; {}", error.what(), error.hint());
+}
+
+// The print stays as the slicer made it.
+void leave_as_it_is(HookReport& report, const Error& error) {
+  report.forms.resize(1);
+  report.chosen = 0;
+  report.remark = reason_of(error);
+  report.is_refused = true;
+}
+
+// PrusaSlicer takes another name for the print from a file beside the G-code (its post-processing scripts, "output name").
+constexpr const char* kOutputName = "SLIC3R_PP_OUTPUT_NAME";
+constexpr const char* kNewName = ".output_name";
+
+std::optional<std::string> output_name() {
+  const char* const name = std::getenv(kOutputName);
+  return name != nullptr && *name != '\0' ? std::optional<std::string>(name) : std::nullopt;
+}
+
+// "part.gcode" becomes "part_aerate-12pct.gcode".
+std::optional<std::string> name_with_saving(const HookReport& report) {
+  const auto given = output_name();
+  if (!given || report.chosen == 0) return std::nullopt;
+  const fs::path name = fs::path(*given).filename();
+  const double saved = filament_saved(report.forms.front().figures, report.best().figures);
+  return fmt::format("{}_aerate-{:.0f}pct{}", name.stem().string(), 100 * saved, name.extension().string());
+}
+
 std::string joined(const std::vector<std::string>& remarks) {
   return fmt::format("{}", fmt::join(remarks, "; "));
 }
@@ -225,6 +257,16 @@ std::string new_content(const std::string& original, const HookReport& report) {
   return with_comments(with_thumbnails_of(std::move(gcode), original), comments_for(report));
 }
 
+HookOptions with_model_found(HookOptions options, const std::string& gcode, const SlicerProfile& slicer,
+                             Monitor& monitor) {
+  HollowOptions& hollow = options.request.hollow;
+  if (options.model_folder.empty() || !hollow.model.empty()) return options;
+  PrintNames names{.object = std::nullopt, .output = output_name().value_or("")};
+  if (slicer.labelled_object != nullptr) names.object = slicer.labelled_object(gcode);
+  hollow.model = model_of_print(options.model_folder, names, size_of_print(gcode), hollow.load, monitor);
+  return options;
+}
+
 }  // namespace
 
 HookReport run_hook(const HookOptions& options, Monitor& monitor) {
@@ -244,15 +286,27 @@ HookReport run_hook(const HookOptions& options, Monitor& monitor) {
                           .hollow = std::nullopt});
   AnnouncedFile pending(options.gcode, log);
   const PrivateFolder scratch(log);
-  if (options.request.hollow.model.empty()) {
-    report.remark = "no model was given";
-  } else {
-    slice_forms(original, options, scratch.path(), report, log);
+  try {
+    const HookOptions complete = with_model_found(options, original, *report.origin.slicer, log);
+    if (complete.request.hollow.model.empty()) {
+      report.remark = "no model was given";
+    } else {
+      slice_forms(original, complete, scratch.path(), report, log);
+    }
+  } catch (const Error& error) {
+    if (options.is_strict || error.code() == ExitCode::interrupted) throw;
+    leave_as_it_is(report, error);
+    log.notice("the print stays as it is: " + on_one_line(report.remark));
   }
   log.stage("write");
   const std::string content = new_content(original, report);
   log.check_interrupted();
   pending.commit_text(content);
+  if (options.names_saving) report.new_name = name_with_saving(report);
+  if (report.new_name) {
+    AnnouncedFile name(options.gcode.string() + kNewName, log);
+    name.commit_text(*report.new_name + '\n');
+  }
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

@@ -235,7 +235,7 @@ TEST_F(Slicing, TheHookRefusesModelsThatDoNotStandAsInTheFile) {
     command.insert(command.end(), arguments.begin(), arguments.end());
     ASSERT_EQ(run(command).exit_code, 0) << arguments.front();
     const std::string before = read_bytes(output());
-    const ProcessResult result = run({AERATE_EXECUTABLE, "hook", "--model", part, output()});
+    const ProcessResult result = run({AERATE_EXECUTABLE, "hook", "--strict", "--model", part, output()});
     EXPECT_EQ(result.exit_code, 3) << arguments.front() << ": " << result.err;
     EXPECT_TRUE(contains(result.err, "does not give the same G-code")) << arguments.front();
     EXPECT_EQ(read_bytes(output()), before) << arguments.front();
@@ -243,14 +243,35 @@ TEST_F(Slicing, TheHookRefusesModelsThatDoNotStandAsInTheFile) {
   }
 }
 
-TEST_F(Slicing, AFailingHookFailsTheExport) {
+TEST_F(Slicing, AHookThatCannotDoItsWorkCostsNoPrint) {
   AERATE_NEEDS("prusa-slicer");
   const fs::path part = model("part.stl", tetrahedron());
-  const ProcessResult result =
-      run({"prusa-slicer", "--export-gcode", "--post-process",
-           std::string(AERATE_EXECUTABLE) + " hook --model /none.stl", "--output", output(), part});
-  EXPECT_NE(result.exit_code, 0);
-  EXPECT_TRUE(contains(result.out + result.err, "/none.stl"));
+  const auto sliced_with = [&](const std::string& options) {
+    return run({"prusa-slicer", "--export-gcode", "--post-process",
+                std::string(AERATE_EXECUTABLE) + " hook --model /none.stl" + options, "--output", output(),
+                part});
+  };
+  EXPECT_EQ(sliced_with("").exit_code, 0);
+  EXPECT_TRUE(contains(read_bytes(output()), "; aerate_result = unchanged\n; aerate_remark = /none.stl: "));
+  fs::remove(output());
+  const ProcessResult strict = sliced_with(" --strict");
+  EXPECT_NE(strict.exit_code, 0);
+  EXPECT_TRUE(contains(strict.out + strict.err, "/none.stl"));
+}
+
+// The command line of PrusaSlicer 2.5 reads the name that it is told, and takes it away, but does not rename its output.
+TEST_F(Slicing, TheHookFindsTheModelByTheNameOfThePrint) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path part = block();
+  const ProcessResult result = run(
+      {"prusa-slicer", "--export-gcode", "--fill-density", "40%", "--layer-height", "0.3", "--post-process",
+       std::string(AERATE_EXECUTABLE) + " hook --model-folder " + part.parent_path().string() +
+           " --max-radius 8 --min-radius 2 --name-saving",
+       "--output", outputs() / (part.stem().string() + "_0.3mm.gcode"), part});
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const std::vector<std::string> names = entries_of(outputs());
+  ASSERT_EQ(names, std::vector<std::string>{part.stem().string() + "_0.3mm.gcode"});
+  EXPECT_TRUE(contains(read_bytes(outputs() / names[0]), "; aerate_result = modifiers\n"));
 }
 
 TEST_F(Slicing, AProjectKeepsItsPlace) {
@@ -331,15 +352,15 @@ TEST_F(Slicing, TheHookLosesNothingThatAProjectHas) {
     options.emplace_back("--dont-arrange");
     slice_with_prusa(project(each.name), output(), options);
     const std::string before = read_bytes(output());
-    const ProcessResult result =
-        run({AERATE_EXECUTABLE, "hook", "--model", project(each.name), "--max-radius", "5", output()});
+    const ProcessResult result = run({AERATE_EXECUTABLE, "hook", "--strict", "--model", project(each.name),
+                                      "--max-radius", "5", output()});
     EXPECT_EQ(result.exit_code, 3) << result.err;
     EXPECT_TRUE(contains(result.err, "the project has " + each.in_project + ", which would be lost"));
     EXPECT_EQ(read_bytes(output()), before);
     if (each.in_gcode.empty()) continue;
     const ProcessResult as_mesh =
-        run({AERATE_EXECUTABLE, "hook", "--model", each.name == "extruder2" ? small : block, "--max-radius",
-             "5", output()});
+        run({AERATE_EXECUTABLE, "hook", "--strict", "--model", each.name == "extruder2" ? small : block,
+             "--max-radius", "5", output()});
     EXPECT_EQ(as_mesh.exit_code, 3) << as_mesh.err;
     EXPECT_TRUE(contains(as_mesh.err, each.in_gcode));
     EXPECT_EQ(read_bytes(output()), before);
