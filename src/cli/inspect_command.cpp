@@ -52,7 +52,7 @@ struct InspectCommand {
     options.weld = model.weld;
     if (self_intersections) options.self_intersections = SelfIntersectionSearch::on;
     JobFiles files{{{"model", options.model}, {"configuration file", config.path()}}, {}};
-    if (drainage && is_process_file(process)) files.inputs.push_back({"process file", process});
+    if (drainage) files.inputs.push_back({"process file", process_file_of(process)});
     run_reported(run_options, files, [&](Monitor& monitor) { return inspect_model(options, monitor); });
   }
 

@@ -32,10 +32,10 @@ const CLI::Option* add_process_option(CLI::App& command, std::string& name, cons
     return {};
   };
   return command
-      .add_option(
-          "--process", name,
-          fmt::format("What prints it: {}, or a file of your own (.json); {}; 'list' names every figure",
-                      process_names(), what_it_does))
+      .add_option("--process", name,
+                  fmt::format("What prints it: {}, or a file of your own: its path, or its name if it is "
+                              "~/.config/aerate/processes/NAME.json; {}; 'list' names every figure",
+                              process_names(), what_it_does))
       ->check(CLI::Validator(list_if_asked, ""))
       ->type_name("NAME")
       ->capture_default_str();
@@ -49,7 +49,7 @@ ProcessOptions::ProcessOptions(CLI::App& command, const ConfigFile& config)
       direction_(command, config) {}
 
 std::filesystem::path ProcessOptions::file() const {
-  return is_process_file(process_) ? process_ : std::string();
+  return process_file_of(process_);
 }
 
 ProcessChoice ProcessOptions::choice() const {

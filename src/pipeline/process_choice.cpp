@@ -8,6 +8,8 @@
 #include "core/error.h"
 #include "core/listed.h"
 #include "core/overhang.h"
+#include "core/printable.h"
+#include "pipeline/own_processes.h"
 #include "pipeline/process_file.h"
 
 namespace aerate {
@@ -54,6 +56,56 @@ void require_printable(const ProcessChoice& choice, Limit limit, Limit least) {
                    fmt::format("give a {} of {:g} mm or more", row_of(limit).option, figure.value));
 }
 
+UsageError unknown_process(const std::string& name) {
+  const auto folder = own_processes_folder();
+  const std::string in_folder = folder ? fmt::format(" the name of a file in {},", folder->string()) : "";
+  return UsageError(
+      fmt::format("unknown process \"{}\"", name),
+      fmt::format("use one of {},{} or the path of a process file (.json)", process_names(), in_folder));
+}
+
+std::string figures_of(const Process& process) {
+  std::string text;
+  for (const auto& [limit, figure] : process.limits) {
+    const LimitRow& row = row_of(limit);
+    fmt::format_to(std::back_inserter(text), "  {:<12}{:>5g} {}: {}\n", row.name, figure.value,
+                   row.unit.symbol, printable(figure.source));
+  }
+  return text;
+}
+
+std::string in_words(const std::string& name, const Process& process) {
+  return fmt::format("{}: {}; material {}{}\n", printable(name), printable(process.title),
+                     printable(process.material),
+                     process.drainage == Drainage::needed ? "; closed voids have to be drained" : "");
+}
+
+// A process of the user's own by the name that it is chosen by; what is wrong with it if it cannot be.
+std::string own_in_words(const std::filesystem::path& file) {
+  const std::string name = file.stem().string();
+  const std::string place = fmt::format("  {:<12}{}\n", "file", printable(file.string()));
+  if (find_process(name) != nullptr)
+    return fmt::format("{}: the built-in process of this name goes first, give the path of yours\n{}",
+                       printable(name), place);
+  try {
+    const Process process = read_process_file(file);
+    static_cast<void>(limits_under(process, {}, ProcessCheck::strict));
+    return in_words(name, process) + place + figures_of(process);
+  } catch (const Error& error) {
+    return fmt::format("{}: broken: {}\n{}", printable(name), printable(error.what()), place);
+  }
+}
+
+std::string own_processes_in_words() {
+  std::string text;
+  try {
+    for (const std::filesystem::path& file : own_process_files()) text += own_in_words(file);
+  } catch (const InputError& error) {
+    text += printable(error.what()) + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 bool is_default(const ProcessChoice& choice, Limit limit) {
@@ -64,17 +116,16 @@ const char* name_of(Build build) {
   return build == Build::hanging ? "hanging" : "standing";
 }
 
-bool is_process_file(const std::string& name_or_file) {
-  return name_or_file.ends_with(".json") || name_or_file.find('/') != std::string::npos;
+std::filesystem::path process_file_of(const std::string& name_or_file) {
+  if (name_or_file.ends_with(".json") || name_or_file.find('/') != std::string::npos) return name_or_file;
+  if (find_process(name_or_file) != nullptr) return {};
+  return own_process_file(name_or_file).value_or(std::filesystem::path());
 }
 
 Process choose_process(const std::string& name_or_file) {
-  if (is_process_file(name_or_file)) return read_process_file(name_or_file);
+  if (const auto file = process_file_of(name_or_file); !file.empty()) return read_process_file(file);
   const Process* process = find_process(name_or_file);
-  if (process == nullptr) {
-    throw UsageError(fmt::format("unknown process \"{}\"", name_or_file),
-                     fmt::format("use one of {}, or the path of a process file (.json)", process_names()));
-  }
+  if (process == nullptr) throw unknown_process(name_or_file);
   return *process;
 }
 
@@ -266,16 +317,8 @@ std::string processes_that(const std::function<bool(const Process&)>& condition)
 
 std::string processes_in_words() {
   std::string text;
-  const auto line = std::back_inserter(text);
-  for (const Process& process : processes()) {
-    fmt::format_to(line, "{}: {}; material {}{}\n", process.name, process.title, process.material,
-                   process.drainage == Drainage::needed ? "; closed voids have to be drained" : "");
-    for (const auto& [limit, figure] : process.limits) {
-      const LimitRow& row = row_of(limit);
-      fmt::format_to(line, "  {:<12}{:>5g} {}: {}\n", row.name, figure.value, row.unit.symbol, figure.source);
-    }
-  }
-  return text;
+  for (const Process& process : processes()) text += in_words(process.name, process) + figures_of(process);
+  return text + own_processes_in_words();
 }
 
 }  // namespace aerate

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -33,8 +34,10 @@ struct ProcessChoice {
   PrintDirection direction = {};
 };
 
-// Whether --process names a file: it ends in .json or holds a slash.
-bool is_process_file(const std::string& name_or_file);
+// The file that --process chooses: the path that it is if it ends in .json or holds a slash, else the one of this name in the
+// user's configuration folder (pipeline/own_processes.h). Empty for a built-in process, which goes first, and for unknown
+// names.
+std::filesystem::path process_file_of(const std::string& name_or_file);
 
 // The built-in process of this name, or that of the file.
 // Throws UsageError for an unknown name, and what read_process_file throws.
@@ -103,7 +106,8 @@ std::string process_names();
 // The built-in processes that meet a condition, as in a sentence: "sla, sls and metal".
 std::string processes_that(const std::function<bool(const Process&)>& condition);
 
-// Every built-in process with its figures and their sources, for people.
+// Every built-in process with its figures and their sources, for people; then those of the user's configuration folder, with
+// their files, or what is wrong with them.
 std::string processes_in_words();
 
 }  // namespace aerate

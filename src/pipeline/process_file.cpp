@@ -16,16 +16,15 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kHint =
-    "docs/processes.md describes process files; '--process list' names the built-in ones";
+    "docs/processes.md describes process files; '--process list' names all that are found by name";
 
 Json parse(const std::filesystem::path& path) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20;
   try {
     return Json::parse(read_file(path, kMostBytes).text());
   } catch (const InputError& error) {
-    throw InputError(
-        fmt::format("the process file cannot be read: {}", error.what()),
-        "a process is a built-in name or the path of a .json file; '--process list' names the former");
+    throw InputError(fmt::format("the process file cannot be read: {}", error.what()),
+                     "a process is a name that '--process list' has, or the path of a .json file");
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: not JSON: {:.200}", path.string(), error.what()), kHint);
   }

@@ -1,6 +1,8 @@
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/cli/job.h"
@@ -212,6 +214,105 @@ TEST(ProcessOptions, AProcessOfTheUsersOwn) {
   EXPECT_EQ(report["limits"]["max_radius_mm"], 10.0);
   EXPECT_EQ(origin_of(report, "gap")["source"], "mine.json: data sheet");
   EXPECT_TRUE(report["process"]["drainage_needed"].get<bool>());
+}
+
+// A configuration folder with these process files, and the environment that says so.
+std::vector<std::pair<std::string, std::string>> configured(
+    const Job& job, const std::vector<std::pair<std::string, std::string>>& files) {
+  const auto folder = job.folder() / "config";
+  std::filesystem::create_directories(folder / "aerate" / "processes");
+  for (const auto& [name, text] : files) job.input("config/aerate/processes/" + name, text);
+  return {{"XDG_CONFIG_HOME", folder.string()}};
+}
+
+TEST(ProcessOptions, AProcessOfTheUsersOwnIsFoundByItsName) {
+  const Job job;
+  const auto environment =
+      configured(job, {{"mine.json", R"({"base": "sls", "wall": 1.5})"}, {"fdm.json", R"({"wall": 9})"}});
+  const auto model = job.input("cube.stl", cube_of_40());
+  const auto wall_of = [&](const std::string& name, const auto& variables) {
+    const ProcessResult result =
+        run(job.hollow(model, {"--process", name, "--no-drain", "--json", "-"}), variables);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.exit_code == 0 ? Json::parse(result.out)["limits"]["wall_mm"].get<double>() : 0;
+  };
+  EXPECT_EQ(wall_of("mine", environment), 1.5);
+  EXPECT_EQ(wall_of("fdm", environment), 1.2);  // the built-in one goes first
+  EXPECT_EQ(wall_of(job.folder() / "config/aerate/processes/fdm.json", environment), 9);
+  // Without that variable, or with one that is no full path, it is ~/.config.
+  std::filesystem::create_directories(job.folder() / ".config");
+  std::filesystem::rename(job.folder() / "config/aerate", job.folder() / ".config/aerate");
+  const std::string home = job.folder();
+  EXPECT_EQ(wall_of("mine", std::vector<std::pair<std::string, std::string>>{{"XDG_CONFIG_HOME", "config"},
+                                                                             {"HOME", home}}),
+            1.5);
+  const ProcessResult inspected =
+      run({AERATE_EXECUTABLE, "inspect", "--drainage", "--process", "mine", model},
+          {{"XDG_CONFIG_HOME", ""}, {"HOME", home}});
+  EXPECT_EQ(inspected.exit_code, 0) << inspected.err;
+}
+
+TEST(ProcessOptions, UnknownNamesAndBrokenFilesOfTheUsersOwn) {
+  const Job job;
+  const auto environment =
+      configured(job, {{"broken.json", "{\"wall\": "}, {"walls.json", R"({"walls": 1})"}});
+  const auto model = job.input("cube.stl", cube_of_40());
+  const auto refused = [&](const std::string& name, int exit_code, const std::vector<std::string>& said) {
+    const ProcessResult result = run(job.hollow(model, {"--process", name}), environment);
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
+    EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
+  };
+  refused("laser", kUsage, {"laser", "fdm, sla, sls, metal", "config/aerate/processes"});
+  refused("broken", kUnreadable, {"config/aerate/processes/broken.json", "JSON"});
+  refused("walls", kUsage, {"config/aerate/processes/walls.json", "unknown key \"walls\""});
+  // They are in nobody else's way.
+  EXPECT_EQ(run(job.hollow(model, {"--process", "fdm"}), environment).exit_code, 0);
+}
+
+TEST(ProcessOptions, TheProcessFileThatANameChoosesIsNeverReplaced) {
+  const Job job;
+  const auto environment = configured(job, {{"mine.json", R"({"wall": 1.5})"}});
+  const std::string file = job.folder() / "config/aerate/processes/mine.json";
+  const ProcessResult result = run(
+      job.hollow(job.input("cube.stl", cube_of_40()), {"--process", "mine", "--json", file}), environment);
+  EXPECT_EQ(result.exit_code, kUsage) << result.err;
+  EXPECT_TRUE(contains(result.err, "process file"));
+}
+
+TEST(ProcessOptions, TheListHasTheUsersOwnAfterTheBuiltInOnes) {
+  const Job job;
+  const auto list = [](const auto& variables) {
+    const ProcessResult result = run({AERATE_EXECUTABLE, "hollow", "--process", "list"}, variables);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  const auto environment =
+      configured(job, {{"mine.json", R"({"title": "the bench-top printer", "wall": 1.5})"},
+                       {"broken.json", "{\"wall\": "},
+                       {"thin.json", R"({"wall": 0.1})"},
+                       {"fdm.json", R"({"wall": 9})"},
+                       {"notes.txt", "no process"}});
+  const std::string text = list(environment);
+  const std::size_t mine = text.find("\nmine: the bench-top printer;");
+  ASSERT_NE(mine, std::string::npos) << text;
+  EXPECT_LT(text.find("\nmetal: "), mine);
+  const auto folder = job.folder() / "config/aerate/processes";
+  for (const std::string& part :
+       {"  file        " + (folder / "mine.json").string(), std::string("1.5 mm: mine.json"),
+        "broken: broken: " + (folder / "broken.json").string() + ": not JSON",
+        std::string("thin: broken: thin: wall 0.1 mm"),
+        std::string("fdm: the built-in process of this name")})
+    EXPECT_TRUE(contains(text, part));
+  EXPECT_FALSE(text.find("notes") != std::string::npos);
+  // What is no folder is told, and the built-in ones are there all the same.
+  std::filesystem::remove_all(folder);
+  job.input("config/aerate/processes", "a file");
+  const std::string without = list(environment);
+  EXPECT_TRUE(contains(without, folder.string() + ": process files cannot be looked for"));
+  EXPECT_TRUE(contains(without, "metal: "));
+  std::filesystem::remove(folder);
+  EXPECT_FALSE(list(environment).find("config") != std::string::npos);
 }
 
 TEST(ProcessOptions, LimitsThatTheProcessCannotPrint) {
