@@ -38,7 +38,7 @@ double naive_pipeline(const std::filesystem::path& model, double scale, const Pa
     fmt::print("| naive: {} | {:.2f} | |\n", stage, since_last.seconds());
     since_last = {};
   };
-  const Mesh mesh = load_model(model, {.unit = std::nullopt, .scale = scale}).mesh;
+  const Mesh mesh = load_model(model, {.unit = std::nullopt, .scale = {scale, scale, scale}}).mesh;
   lap("load");
   const ModelLevelSet level_set(mesh, voxel, 16e9, monitor);
   lap("meshToVolume");
@@ -94,7 +94,7 @@ int run(const Arguments& arguments) {
   HollowOptions options;
   options.model = model;
   options.output = folder.path() / "hollow.stl";
-  options.load.scale = scale;
+  options.load.scale = {scale, scale, scale};
   options.packing.method = &packing_method("hexagonal");
   const Limits given{
       {Limit::wall, {0.8}}, {Limit::gap, {0.4}}, {Limit::min_radius, {0.62}}, {Limit::max_radius, {1.0}}};

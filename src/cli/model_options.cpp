@@ -34,6 +34,24 @@ std::string stoppable_packings() {
   return listed(names, "or") + " packing";
 }
 
+// One factor for all axes, or one for each.
+std::optional<Vec3d> parse_scale(std::string_view text) {
+  if (const auto factor = parse_number(text)) return Vec3d{*factor, *factor, *factor};
+  return parse_point(text);
+}
+
+// Empty for factors that a model can be scaled by.
+std::string fault_of_scale(const std::string& text) {
+  constexpr double kMost = 1e9;
+  const auto scale = parse_scale(text);
+  if (!scale) return fmt::format("'{}' is neither a number nor three of them, x,y,z", text);
+  for (const double factor : {scale->x, scale->y, scale->z}) {
+    if (!(factor > 0)) return fmt::format("{:g} is too little (more than 0)", factor);
+    if (factor > kMost) return fmt::format("{:g} is too much (at most {:g})", factor, kMost);
+  }
+  return {};
+}
+
 std::string capitalised(std::string text) {
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
@@ -58,8 +76,11 @@ void ModelOptions::add_size_options(CLI::App& command) {
                   "(default mm)")
       ->check(CLI::IsMember({"mm", "cm", "m", "inch"}))
       ->type_name("UNIT");
-  command.add_option("--scale", scale_, "Factor for the model's size")
-      ->check(number_between({}, 1e9, ""))
+  command
+      .add_option("--scale", scale_,
+                  "Factor for the model's size, or x,y,z: one along each of its axes, as for a resin that "
+                  "shrinks unevenly")
+      ->check(CLI::Validator(fault_of_scale, ""))
       ->type_name("FACTOR")
       ->capture_default_str();
   command
@@ -74,7 +95,7 @@ LoadOptions ModelOptions::load() const {
   LoadOptions options;
   options.volume_lists = volume_lists();
   if (!unit_.empty()) options.unit = units().at(unit_);
-  options.scale = scale_;
+  options.scale = parse_scale(scale_).value();
   return options;
 }
 

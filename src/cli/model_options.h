@@ -36,7 +36,7 @@ struct ModelOptions {
   void add_size_options(CLI::App& command);
 
   std::string unit_;
-  double scale_ = 1.0;
+  std::string scale_ = "1";
 };
 
 // The options of the process and its limits, --packing, --max-voids, --target-density, --device

@@ -27,6 +27,7 @@ Json json_of(const InputFacts& input) {
   return {{"path", input.path.string()},
           {"format", input.format},
           {"parts", input.part_count},
+          {"scale", json_of(input.scale)},
           {"triangles", inspection.triangle_count},
           {"vertices", inspection.vertex_count},
           {"box", json_of(inspection.box)},

@@ -50,10 +50,17 @@ std::string count_of(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", grouped(count), count == 1 ? one : many);
 }
 
+// Nothing for a model of the size that its file has.
+std::string scaling_of(Vec3d scale) {
+  if (scale == Vec3d{1, 1, 1}) return {};
+  if (scale.x == scale.y && scale.y == scale.z) return fmt::format(", scaled by {:g}", scale.x);
+  return fmt::format(", scaled by {:g} along x, {:g} along y, {:g} along z", scale.x, scale.y, scale.z);
+}
+
 void add_input(Lines& lines, const InputFacts& input) {
-  lines.add("model", "{}: {}, {}, {}", input.path.filename().string(), input.format,
-            count_of(input.inspection.triangle_count, "triangle", "triangles"),
-            size_of(input.inspection.box));
+  lines.add("model", "{}: {}, {}, {}{}", input.path.filename().string(), input.format,
+            count_of(input.inspection.triangle_count, "triangle", "triangles"), size_of(input.inspection.box),
+            scaling_of(input.scale));
 }
 
 void add_stages(Lines& lines, const std::vector<StageCost>& stages) {

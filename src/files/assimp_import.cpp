@@ -103,7 +103,7 @@ void add_mesh(const aiMesh& mesh, PartWriter& part, const std::string& name) {
   }
 }
 
-void add_node(const aiScene& scene, const aiNode& node, const Affine& parent, double factor,
+void add_node(const aiScene& scene, const aiNode& node, const Affine& parent, Vec3d factor,
               const std::string& name, Welder& welder, LoadedModel& model) {
   const Affine transform = parent * to_affine(node.mTransformation);
   PartWriter part(welder, transform, factor, name);
@@ -120,7 +120,7 @@ void add_node(const aiScene& scene, const aiNode& node, const Affine& parent, do
 // No vertices are joined by assimp: 5.2 gives an STL facet's normal to its corners, and then takes corners of
 // different facets for different vertices.
 LoadedModel import_with_assimp(const std::string& name, const PlainFile& file, const char* extension,
-                               double factor, const Affine& placement) {
+                               Vec3d factor, const Affine& placement) {
   if (file.triangles == 0) fail_to_read(name, "no triangles");
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // which takes it over

@@ -24,10 +24,10 @@ struct PlainFile {
 // Reads through assimp, which is lenient: it reads past missing data with zeros, leaves out what it cannot use
 // and trusts the counts of a header with memory. So the room of a format looks through the whole file before,
 // and gives assimp a plain one that it makes of it. `name` is the file's, for messages; `extension` is lower
-// case without its dot; `factor` converts a coordinate to millimetres. Throws InputError for what assimp
+// case without its dot; `factor` converts coordinates to millimetres. Throws InputError for what assimp
 // refuses, for coordinates that are not finite, and unless every triangle arrives. Nodes are taken with their
 // transforms, under `placement`; one that shows a mesh is a part. No other file is ever opened.
 LoadedModel import_with_assimp(const std::string& name, const PlainFile& file, const char* extension,
-                               double factor, const Affine& placement = Affine::Identity());
+                               Vec3d factor, const Affine& placement = Affine::Identity());
 
 }  // namespace aerate

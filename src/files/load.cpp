@@ -24,8 +24,9 @@ double millimetres_per(LengthUnit unit) {
 }
 
 LoadedModel load_model(InputFile file, const MeshFormat& format, const LoadOptions& options) {
-  if (!std::isfinite(options.scale) || !(options.scale > 0))
-    throw UsageError(fmt::format("the scale must be a positive number, not {:g}", options.scale));
+  for (const double scale : {options.scale.x, options.scale.y, options.scale.z})
+    if (!std::isfinite(scale) || !(scale > 0))
+      throw UsageError(fmt::format("the scale must be a positive number, not {:g}", scale));
   LoadedModel model = format.read(file, options);
   if (model.mesh.triangles.empty()) fail_to_read(file, "no triangles");
   model.format = format.name;

@@ -43,7 +43,7 @@ struct VolumeList {
 struct LoadOptions {
   // For formats that carry no unit; 3MF and glTF files have their own and refuse another.
   std::optional<LengthUnit> unit;
-  double scale = 1.0;  // on top of the unit; finite and positive
+  Vec3d scale{1, 1, 1};  // on top of the unit, along the axes of what is loaded; finite and positive
   // A package that has one of these with a volume that is not part of the model is refused, unless that is a modifier
   // of one of these names: such are read apart.
   std::vector<VolumeList> volume_lists = {};
@@ -67,10 +67,10 @@ struct LoadedModel {
 // Reads a model of any of the formats in formats.h; the file name's ending (any case) says which. Triangle
 // order is that of the file, with degenerate triangles; polygons are triangulated; points and lines are left
 // out; components and transforms are applied. Coordinates are converted to millimetres in double and rounded
-// once; with unit and scale 1 they keep the bits of a binary file. (assimp reads decimal text to within one
+// once; with unit and scales of 1 they keep the bits of a binary file. (assimp reads decimal text to within one
 // unit in the last place.) Throws InputError (missing, a directory, empty, truncated, wrong triangle count,
 // NaN or infinite coordinates, unknown or garbled content, no triangles, a volume that is not part of the
-// model), UsageError for a unit that contradicts the file's or an unusable scale. O(bytes).
+// model), UsageError for a unit that contradicts the file's or unusable scales. O(bytes).
 LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& options = {});
 
 // As above, of a file that is in memory already.

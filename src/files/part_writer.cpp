@@ -1,5 +1,6 @@
 #include "files/part_writer.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -16,30 +17,30 @@ bool is_finite(Vec3f a, Vec3f b, Vec3f c) {
 
 }  // namespace
 
-double millimetres_per_unit(const LoadOptions& options) {
-  return millimetres_per(options.unit.value_or(LengthUnit::millimetre)) * options.scale;
+Vec3d millimetres_per_unit(const LoadOptions& options) {
+  return options.scale * millimetres_per(options.unit.value_or(LengthUnit::millimetre));
 }
 
-double millimetres_per_unit(const LoadOptions& options, const UnitOfFile& own, const std::string& name) {
+Vec3d millimetres_per_unit(const LoadOptions& options, const UnitOfFile& own, const std::string& name) {
   if (options.unit && millimetres_per(*options.unit) != own.millimetres) {
     throw UsageError(fmt::format("{}: the file says that its unit is the {}", name, own.name),
                      "leave out --unit; --scale changes the size");
   }
-  return own.millimetres * options.scale;
+  return options.scale * own.millimetres;
 }
 
-PartWriter::PartWriter(Welder& welder, const Affine& transform, double factor, const std::string& name)
+PartWriter::PartWriter(Welder& welder, const Affine& transform, Vec3d factor, const std::string& name)
     : welder_(welder),
       transform_(transform),
       factor_(factor),
-      as_read_(transform.matrix() == Affine::Identity().matrix() && factor == 1.0),
+      as_read_(transform.matrix() == Affine::Identity().matrix() && factor == Vec3d{1, 1, 1}),
       mirrored_(transform.linear().determinant() < 0),
       name_(name) {}
 
 Vec3f PartWriter::convert(Vec3f corner) const {
   const Vec3d p = to_double(corner);
-  const Eigen::Vector3d moved = transform_ * Eigen::Vector3d(p.x, p.y, p.z) * factor_;
-  return to_float({moved.x(), moved.y(), moved.z()});
+  const Eigen::Vector3d moved = transform_ * Eigen::Vector3d(p.x, p.y, p.z);
+  return to_float({moved.x() * factor_.x, moved.y() * factor_.y, moved.z() * factor_.z});
 }
 
 void PartWriter::add_triangle(Vec3f a, Vec3f b, Vec3f c) {
@@ -69,7 +70,7 @@ void PartWriter::fail_too_large() const {
   throw InputError(
       fmt::format("{}: triangle {} has a coordinate too large for single precision once it is converted to "
                   "millimetres (by {:g})",
-                  name_, welder_.triangle_count() + 1, factor_),
+                  name_, welder_.triangle_count() + 1, std::max({factor_.x, factor_.y, factor_.z})),
       "check --unit and --scale");
 }
 

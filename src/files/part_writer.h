@@ -11,22 +11,22 @@ namespace aerate {
 // x -> A x + b, of a file's nodes, components and build items.
 using Affine = Eigen::Transform<double, 3, Eigen::AffineCompact>;
 
-// Millimetres for a coordinate of 1 in a file that does not say its unit.
-double millimetres_per_unit(const LoadOptions& options);
+// Millimetres for coordinates of 1 in a file that does not say its unit.
+Vec3d millimetres_per_unit(const LoadOptions& options);
 
 // In a file that does. Throws UsageError if the options have another unit; `name` is the file's.
 struct UnitOfFile {
   const char* name;
   double millimetres;
 };
-double millimetres_per_unit(const LoadOptions& options, const UnitOfFile& own, const std::string& name);
+Vec3d millimetres_per_unit(const LoadOptions& options, const UnitOfFile& own, const std::string& name);
 
 // Hands triangles of a part to the welder: transformed in double, converted to millimetres and rounded
 // once; a part that is neither moved nor converted keeps its bits. A mirrored part is turned right side out.
 class PartWriter {
  public:
-  // `factor`: millimetres for a unit of the file. `name`: the file's, for messages.
-  PartWriter(Welder& welder, const Affine& transform, double factor, const std::string& name);
+  // `factor`: millimetres for a unit of the file along each axis, after the transform. `name`: the file's, for messages.
+  PartWriter(Welder& welder, const Affine& transform, Vec3d factor, const std::string& name);
 
   // Corners as in the file. Throws InputError if one is not finite, before or after conversion.
   void add_triangle(Vec3f a, Vec3f b, Vec3f c);
@@ -38,7 +38,7 @@ class PartWriter {
 
   Welder& welder_;
   Affine transform_;
-  double factor_;
+  Vec3d factor_;
   bool as_read_;
   bool mirrored_;
   const std::string& name_;

@@ -206,7 +206,7 @@ class TextStlCheck {
   bool is_written_ = false;  // the 'solid' that the next triangle belongs to
 };
 
-LoadedModel read_text_stl(InputFile& file, std::string_view text, double factor) {
+LoadedModel read_text_stl(InputFile& file, std::string_view text, Vec3d factor) {
   std::vector<std::string> notices;
   const PlainFile plain = TextStlCheck(file.name, text, notices).run();
   file.data.reset();
@@ -217,7 +217,7 @@ LoadedModel read_text_stl(InputFile& file, std::string_view text, double factor)
 
 // assimp would read a binary file too, but takes some headers for colours or other encodings.
 LoadedModel read_stl(InputFile& file, const LoadOptions& options) {
-  const double factor = millimetres_per_unit(options);
+  const Vec3d factor = millimetres_per_unit(options);
   // Some programs fill up the last block of a text file.
   const std::string_view text = file.text().substr(0, file.text().find_last_not_of('\0') + 1);
   if (!is_binary_of_its_size(file) && looks_like_text(text)) return read_text_stl(file, text, factor);

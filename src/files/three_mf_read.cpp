@@ -40,7 +40,7 @@ class Reader3mf {
   LoadedModel build(const LoadOptions& options) {
     take_modifiers(options);
     const ModelPart& model = part({});
-    const double factor = millimetres_per_unit(options, model.unit, file_.name);
+    const Vec3d factor = millimetres_per_unit(options, model.unit, file_.name);
     require_something_to_print(model);
     require_modest(model);
     LoadedModel loaded{.mesh = {}, .format = {}, .part_count = 0, .notices = {}};
@@ -163,7 +163,7 @@ class Reader3mf {
   }
 
   // What the build shows: only of such objects do projects list volumes.
-  void add_item(const Found& found, const Affine& transform, double factor, Welder& welder,
+  void add_item(const Found& found, const Affine& transform, Vec3d factor, Welder& welder,
                 LoadedModel& loaded) {
     const ModelObject& object = *found.object;
     if (modifiers_.empty() || !is_model(object)) return add_object(found, transform, factor, welder, loaded);
@@ -187,7 +187,7 @@ class Reader3mf {
     }
   }
 
-  void add_object(const Found& found, const Affine& transform, double factor, Welder& welder,
+  void add_object(const Found& found, const Affine& transform, Vec3d factor, Welder& welder,
                   LoadedModel& loaded) {
     const ModelObject& object = *found.object;
     if (!is_model(object)) {

@@ -208,6 +208,7 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
   model.input.path = path;
   model.input.format = loaded.format;
   model.input.part_count = loaded.part_count;
+  model.input.scale = options.scale;
   if (loaded.part_count > 1)
     monitor.notice(fmt::format("{} holds {} parts; all are used, as one model", path.filename().string(),
                                loaded.part_count));

@@ -204,6 +204,29 @@ TEST(Command, UnitAndScaleApply) {
               0.1);
 }
 
+TEST(Command, EachAxisIsScaledByItsOwnFactor) {
+  const Job job;
+  const auto model = job.input("box.stl", make_box({0, 0, 0}, {20, 30, 40}));
+  const auto report = [&](const std::string& scale) {
+    const ProcessResult result = run(job.hollow(model, {"--scale", scale, "--json", "-"}));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.exit_code == 0 ? Json::parse(result.out) : Json();
+  };
+  const Json uneven = report("1.1,1,1.2");
+  EXPECT_EQ(uneven["input"]["scale"], Json::array({1.1, 1.0, 1.2}));
+  EXPECT_NEAR(uneven["input"]["box"]["upper_mm"][0].get<double>(), 22, 1e-4);
+  EXPECT_NEAR(uneven["input"]["box"]["upper_mm"][1].get<double>(), 30, 1e-4);
+  EXPECT_NEAR(uneven["input"]["box"]["upper_mm"][2].get<double>(), 48, 1e-4);
+  EXPECT_EQ(report("2")["input"]["scale"], Json::array({2.0, 2.0, 2.0}));
+  const ProcessResult text = run(job.hollow(model, {"--scale", "1.1,1,1.2"}));
+  EXPECT_TRUE(contains(text.out, "scaled by 1.1 along x, 1 along y, 1.2 along z"));
+  // From a configuration file as well.
+  const auto config = job.input("scale.toml", "scale = \"1.5,1,1\"\n");
+  const ProcessResult configured = run(job.hollow(model, {"--config", config, "--json", "-"}));
+  ASSERT_EQ(configured.exit_code, 0) << configured.err;
+  EXPECT_EQ(Json::parse(configured.out)["input"]["scale"], Json::array({1.5, 1.0, 1.0}));
+}
+
 TEST(Command, SeveralPartsAreAllUsedAndSaidSo) {
   const Job job;
   const std::string two =

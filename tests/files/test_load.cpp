@@ -193,23 +193,45 @@ TEST_F(Load, UnitAndScaleAreAppliedInDoubleAndRoundedOnce) {
     for (const double scale : {1.0, 0.3, 7.1}) {
       Mesh expected = odd_box();
       for (Vec3f& p : expected.positions) p = to_float(to_double(p) * (factor * scale));
-      expect_same_corners(load("box.stl", bytes, {.unit = unit, .scale = scale}).mesh, expected);
+      expect_same_corners(load("box.stl", bytes, {.unit = unit, .scale = {scale, scale, scale}}).mesh,
+                          expected);
     }
   }
+}
+
+TEST_F(Load, EachAxisHasAScaleOfItsOwn) {
+  const Vec3d scale{1.02, 0.97, 3};
+  Mesh expected = odd_box();
+  for (Vec3f& p : expected.positions) {
+    const Vec3d at = to_double(p) * 25.4;
+    p = to_float({at.x * scale.x, at.y * scale.y, at.z * scale.z});
+  }
+  const LoadOptions options{.unit = LengthUnit::inch, .scale = scale};
+  const double volume = signed_volume(odd_box()) * 25.4 * 25.4 * 25.4 * scale.x * scale.y * scale.z;
+  for (const auto& [name, bytes] : {std::pair{"binary.stl", to_binary_stl(odd_box())},
+                                    std::pair{"text.stl", to_text_stl(odd_box(), "box")}}) {
+    const Mesh mesh = load(name, bytes, options).mesh;
+    EXPECT_NEAR(signed_volume(mesh), volume, 1e-5 * volume) << name;
+  }
+  expect_same_corners(load("binary.stl", to_binary_stl(odd_box()), options).mesh, expected);
 }
 
 TEST_F(Load, UnusableScaleIsAUsageError) {
   const std::filesystem::path path = write("box.stl", to_binary_stl(odd_box()));
   for (const double scale :
        {0.0, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_TRUE(
-        contains(message_of<UsageError>([&] { load_model(path, {.unit = {}, .scale = scale}); }), "scale"));
+    for (const Vec3d scales :
+         {Vec3d{scale, scale, scale}, Vec3d{scale, 1, 1}, Vec3d{1, scale, 1}, Vec3d{1, 1, scale}})
+      EXPECT_TRUE(contains(message_of<UsageError>([&] { load_model(path, {.unit = {}, .scale = scales}); }),
+                           "scale"));
   }
 }
 
 TEST_F(Load, OverflowThroughScaleIsAnInputError) {
   const std::filesystem::path path = write("box.stl", to_binary_stl(odd_box()));
-  const std::string message = message_of<InputError>([&] { load_model(path, {.unit = {}, .scale = 1e39}); });
+  const std::string message = message_of<InputError>([&] {
+    load_model(path, {.unit = {}, .scale = {1e39, 1e39, 1e39}});
+  });
   EXPECT_TRUE(contains(message, "too large"));
   EXPECT_TRUE(contains(message, "--scale"));
 }

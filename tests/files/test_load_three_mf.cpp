@@ -40,11 +40,11 @@ TEST_F(Load, UnitOf3mfIsApplied) {
 TEST_F(Load, UnitThatContradictsThe3mfIsAUsageError) {
   const std::filesystem::path path =
       write("box.3mf", make_3mf(model_xml(object_xml(1, mesh_xml(odd_box())), item_xml(1), "", "inch")));
-  const auto load_as = [&](LengthUnit unit) { return load_model(path, {.unit = unit, .scale = 1.0}); };
+  const auto load_as = [&](LengthUnit unit) { return load_model(path, {.unit = unit}); };
   EXPECT_TRUE(contains(message_of<UsageError>([&] { load_as(LengthUnit::millimetre); }), "inch"));
   EXPECT_EQ(load_as(LengthUnit::inch).mesh.triangles.size(), 12u);
-  EXPECT_NEAR(signed_volume(load_model(path, {.unit = {}, .scale = 1 / 25.4}).mesh), signed_volume(odd_box()),
-              1e-5);
+  EXPECT_NEAR(signed_volume(load_model(path, {.unit = {}, .scale = {1 / 25.4, 1 / 25.4, 1 / 25.4}}).mesh),
+              signed_volume(odd_box()), 1e-5);
 }
 
 TEST_F(Load, ComponentsAndBuildTransformsOf3mf) {

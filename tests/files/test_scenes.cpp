@@ -75,7 +75,7 @@ TEST_F(Scenes, GltfIsInMetresAnd3dsInAnyUnit) {
     const Box3f box = bounding_box(load(name, scene(name), options).mesh);
     return box.upper.x - box.lower.x;
   };
-  EXPECT_NEAR(width("scene.glb", {.unit = LengthUnit::metre, .scale = 0.5}), 25, 1e-4);
+  EXPECT_NEAR(width("scene.glb", {.unit = LengthUnit::metre, .scale = {0.5, 0.5, 0.5}}), 25, 1e-4);
   EXPECT_NEAR(width("scene.3ds", {.unit = LengthUnit::inch}), 50 * 25.4, 1e-2);
 }
 
