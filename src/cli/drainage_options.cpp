@@ -86,6 +86,10 @@ DrainageOptions::DrainageOptions(CLI::App& command, const ConfigFile& config)
   add_sides("--holes-not-on", not_on_,
             "They do not come out there: a side as above, above:HEIGHT, below:HEIGHT (along --up, mm) or "
             "box:x0,y0,z0,x1,y1,z1 (mm); may be repeated");
+  command.add_flag(
+      "--drain-cavities", opens_cavities_,
+      "Open the sealed cavities that the model has itself too: each gets two escape holes straight "
+      "out through its wall, one low and one high");
   command
       .add_option(
           "--plugs", plugs_,
@@ -104,6 +108,7 @@ void DrainageOptions::require_no_tubes() const {
   if (!on_.empty()) refuse("--holes-on");
   if (!not_on_.empty()) refuse("--holes-not-on");
   if (build_.is_given()) refuse("--build");
+  if (opens_cavities_) refuse("--drain-cavities");
   if (!plugs_.empty()) refuse("--plugs");
   for (const auto& [limit, given] : plug_limits_.given()) refuse(row_of(limit).option);
 }
@@ -170,6 +175,7 @@ HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
   const auto cup = limits.find(Limit::cup);
   if (options.build == Build::hanging && cup != limits.end())
     options.drainage->widest_cup = cup->second.value;
+  options.opens_cavities = opens_cavities_;
   return with_plugs_asked_for(std::move(options));
 }
 

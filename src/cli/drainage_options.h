@@ -21,7 +21,7 @@ class BuildOption {
   const CLI::Option* option_;
 };
 
-// --drain, --no-drain, the limits of drainage and of plugs, --escape-hole, --holes-on, --holes-not-on, --build, --plugs
+// --drain, --no-drain, the limits of drainage and of plugs, --escape-hole, --holes-on, --holes-not-on, --build, --drain-cavities, --plugs
 class DrainageOptions {
  public:
   DrainageOptions(CLI::App& command, const ConfigFile& config);
@@ -32,6 +32,9 @@ class DrainageOptions {
 
   // The file of plugs; empty unless asked for.
   const std::string& plugs() const { return plugs_; }
+
+  // Whether the model's own cavities are to be opened.
+  bool opens_cavities() const { return opens_cavities_; }
 
   // Whether --drain itself was given.
   bool is_asked_for() const { return drain_option_->count() > 0 && drain_; }
@@ -52,6 +55,7 @@ class DrainageOptions {
   std::string plugs_;
   std::vector<std::string> places_, on_, not_on_;
   BuildOption build_;
+  bool opens_cavities_ = false;
 };
 
 }  // namespace aerate::cli

@@ -203,6 +203,9 @@ struct HollowCommand {
       throw UsageError("--as modifiers leaves no holes that --plugs could close", "leave out one of them");
     if (options.modifiers && drainage.is_asked_for())
       throw UsageError("--as modifiers leaves no voids that --drain could open", "leave out one of them");
+    if (options.modifiers && drainage.opens_cavities())
+      throw UsageError("--as modifiers leaves the model solid: --drain-cavities is for voids that drain",
+                       "leave out one of them");
     if (options.modifiers) {
       options.packing.process = walled_by_perimeters(std::move(options.packing.process), options.print);
     } else {

@@ -274,6 +274,32 @@ Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured, Bui
             {"full", drainage.dropped.full}}}};
 }
 
+Json json_of(const CavityHole& hole) {
+  const Vec3d along = hole.tube.end - hole.tube.start;
+  return {{"place_mm", json_of(hole.tube.end)},
+          {"outwards", json_of(normalised(along))},
+          {"diameter_mm", 2 * hole.tube.radius},
+          {"length_mm", length(along)},
+          {"shows_percent", 100 * hole.shows}};
+}
+
+Json json_of(const std::optional<CavityFacts>& facts, Build build) {
+  if (!facts) return nullptr;
+  Json cavities = Json::array();
+  for (const OpenedCavity& cavity : facts->opened.cavities) {
+    Json holes = Json::array();
+    for (const CavityHole& hole : cavity.holes) holes.push_back(json_of(hole));
+    cavities.push_back(
+        {{"volume_mm3", cavity.volume}, {"place_mm", json_of(cavity.place)}, {"holes", holes}});
+  }
+  return {{"count", facts->opened.cavities.size()},
+          {"volume_mm3", facts->opened.volume()},
+          {"holes", facts->opened.hole_count()},
+          {"removed_by_holes_mm3", facts->opened.removed},
+          {"cavities", cavities},
+          {"pools_of_file", facts->pools ? json_of(*facts->pools, build) : Json(nullptr)}};
+}
+
 // Each hole with its plug.
 void add_plugs(Json& drainage, const std::optional<WrittenPlugs>& written) {
   for (Json& hole : drainage["holes"]) hole["plug"] = nullptr;
@@ -374,6 +400,7 @@ std::string to_json(const HollowReport& report) {
   json["ceilings"] = json_of(output.ceilings, output.roof_count, report.limits);
   json["drainage"] =
       report.drainage ? json_of(*report.drainage, *output.drainage, report.build) : Json(nullptr);
+  json["opened_cavities"] = json_of(report.cavities, report.build);
   json["cups"] = json_of(report.cups);
   if (report.drainage) add_plugs(json["drainage"], report.plugs);
   json["volume"] = volume_of(report);

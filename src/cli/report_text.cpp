@@ -202,6 +202,19 @@ void add_drainage(Lines& lines, const HollowReport& report) {
               count_of(drainage.dropped.count(), "void", "voids"), drainage.dropped.volume);
 }
 
+void add_cavities(Lines& lines, const HollowReport& report) {
+  if (!report.cavities || report.cavities->opened.cavities.empty()) return;
+  const OpenedCavities& opened = report.cavities->opened;
+  lines.add("cavities", "{} of the model's own ({:.1f} mm3) opened by {}",
+            count_of(opened.cavities.size(), "cavity", "cavities"), opened.volume(),
+            count_of(opened.hole_count(), "hole", "holes"));
+  std::string places;
+  for (const OpenedCavity& cavity : opened.cavities)
+    for (const CavityHole& hole : cavity.holes) places += (places.empty() ? "" : ", ") + point(hole.tube.end);
+  lines.add("", "holes at {} mm", places);
+  if (report.cavities->pools) add_pools(lines, "in all", *report.cavities->pools, report.build);
+}
+
 void add_plugs(Lines& lines, const std::optional<WrittenPlugs>& written) {
   if (!written) return;
   const auto& [request, plugs, facts, bytes] = *written;
@@ -404,6 +417,7 @@ std::string to_text(const HollowReport& report) {
       fmt::format("{} of {}", grouped(output.roof_count), count_of(output.void_count, "void", "voids")),
       report.limits.roof, report.tolerance_used, report.process);
   add_drainage(lines, report);
+  add_cavities(lines, report);
   if (report.cups) add_cups(lines, *report.cups);
   add_plugs(lines, report.plugs);
   if (!report.modifiers) add_balance(lines, report);

@@ -1,9 +1,13 @@
 #include "pipeline/hollow.h"
 
 #include <filesystem>
+#include <fmt/format.h>
 #include <optional>
 
+#include "check/check_opened.h"
 #include "check/check_written.h"
+#include "core/listed.h"
+#include "packing/air/inspect_drainage.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/balance.h"
 #include "pipeline/best_form.h"
@@ -42,6 +46,7 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
                                    .outer = surface_of(hollowed.model),
                                    .kept = hollowed.model.kept ? &*hollowed.model.kept : nullptr},
                                   monitor);
+    if (hollowed.model.opened) require_no_sealed_cavity(read_back);
     written.bytes = std::filesystem::file_size(pending.file().path());
     if (options.modifiers) return;
     written.balance = balance_of(hollowed.model.mesh, written.facts, hollowed.packing.limits.roof.up);
@@ -102,6 +107,33 @@ std::optional<PrintedCups> cups_of(const HollowedModel& hollowed, const HollowOp
   return cups;
 }
 
+// What stays in the result's voids and opened cavities together, which is found out on columns of its air.
+std::optional<CavityFacts> cavities_of(const HollowedModel& hollowed, Monitor& monitor) {
+  constexpr double kWidestHoles = 2;  // in holes of the request
+  if (!hollowed.model.opened) return std::nullopt;
+  CavityFacts facts{*hollowed.model.opened, std::nullopt};
+  if (facts.opened.cavities.empty()) return facts;
+  monitor.stage("pools");
+  const double widest = kWidestHoles * 2 * hollowed.drainage->request.hole_radius;
+  facts.pools = inspect_drainage(hollowed.carved.solid.mesh,
+                                 {.up = hollowed.packing.limits.roof.up, .widest_hole = widest}, monitor)
+                    .pools;
+  const TrappedPools& pools = *facts.pools;
+  if (pools.after_both > 2 * kPoolsAimedAt * pools.total)
+    monitor.notice(fmt::format(
+        "{:.1f} mm3 ({:.1f} % of the voids and of the model's own cavities) cannot run out, neither in print "
+        "orientation nor upside down",
+        pools.after_both, 100 * pools.after_both / pools.total));
+  return facts;
+}
+
+// Plugs are for the holes of voids.
+void warn_of_unplugged(const OpenedCavities& opened, Monitor& monitor) {
+  if (opened.hole_count() > 0)
+    monitor.notice(fmt::format("the {} of the model's own cavities get no plugs",
+                               counted(opened.hole_count(), "hole", "holes")));
+}
+
 }  // namespace
 
 HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor) {
@@ -126,6 +158,8 @@ HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
   if (!best.options->modifiers)
     warn_of_cavities(best.hollowed.model.inspection, best.hollowed.request.process.process, log);
   report.cups = cups_of(best.hollowed, *best.options, log);
+  report.cavities = cavities_of(best.hollowed, log);
+  if (report.cavities && options.plugs) warn_of_unplugged(report.cavities->opened, log);
   if (pending_plugs) {
     report.plugs = write_plugs(*pending_plugs, best.hollowed, *options.plugs, log);
     commit_both(pending_plugs->file(), pending.file());

@@ -126,6 +126,7 @@ struct HollowOptions {
   // If given, voids are joined by channels and opened by escape holes; else each is sealed.
   std::optional<DrainageRequest> drainage;
   Build build = Build::standing;
+  bool opens_cavities = false;       // those that the model has itself; if voids drain
   std::optional<PlugRequest> plugs;  // if given, of voids that drain
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.

@@ -13,6 +13,7 @@
 #include "core/listed.h"
 #include "mesh/repair.h"
 #include "mesh/topology.h"
+#include "pipeline/held_notices.h"
 #include "pipeline/keep_solid.h"
 
 namespace aerate {
@@ -255,8 +256,15 @@ PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor) {
   model = make_usable(std::move(model),
                       {options.surface, options.weld, options.max_hole, {options.voxel_size, voxel_size}},
                       monitor);
-  model.kept = keep_solid(model, options.keep_solid,
-                          {options.load, options.weld, options.packing.limits().wall}, monitor);
+  const KeepSolidPolicy policy{options.load, options.weld, options.packing.limits().wall};
+  if (options.opens_cavities) {
+    // Holes keep off these regions, and the room that they leave is that of the opened model.
+    HeldNotices held(monitor);
+    model.kept = keep_solid(model, options.keep_solid, policy, held);
+    model = with_open_cavities(std::move(model),
+                               {*options.drainage, options.packing.limits(), options.tolerance}, monitor);
+  }
+  model.kept = keep_solid(model, options.keep_solid, policy, monitor);
   return model;
 }
 

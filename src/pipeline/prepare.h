@@ -11,6 +11,7 @@
 #include "files/load.h"
 #include "mesh/inspect.h"
 #include "pipeline/input_facts.h"
+#include "pipeline/open_cavities.h"
 #include "pipeline/options.h"
 #include "pipeline/remesh_without_loss.h"
 #include "printing/remesh.h"
@@ -27,6 +28,8 @@ struct PreparedModel {
   std::optional<double> outer_deviation;  // see HollowReport
   std::vector<NamedModifier> modifiers;   // of its file, that were asked for
   std::optional<KeptSolid> kept;          // regions of it that stay solid
+  // Its own cavities, if they were to be opened; `mesh` has the holes then.
+  std::optional<OpenedCavities> opened = {};
 
   // Where voids may be: the model less those regions. `surface` is the model's.
   const Mesh& room() const { return kept ? kept->room : mesh; }
@@ -55,7 +58,7 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
 // What hollowing will make of a model, in words: whether its surface can be kept, or what stands in the way.
 std::string use_of(PreparedModel model, const SurfacePolicy& policy);
 
-// Both, as `hollow` is asked to, and the regions that stay solid. Unless the options say, voxels for remeshing leave room for wall and gap.
+// Both, as `hollow` is asked to, the model's own cavities opened, and the regions that stay solid. Unless the options say, voxels for remeshing leave room for wall and gap.
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate

@@ -14,6 +14,7 @@
 #include "pipeline/drain.h"
 #include "pipeline/drainage_verdict.h"
 #include "pipeline/input_facts.h"
+#include "pipeline/open_cavities.h"
 #include "pipeline/options.h"
 #include "pipeline/plug_file.h"
 #include "pipeline/print_prediction.h"
@@ -34,6 +35,12 @@ struct KeptFacts {
   std::size_t count = 0;
   double volume = 0;           // of what of them is in the model, about, mm3
   std::optional<double> wall;  // measured between them and what was taken out, mm
+};
+
+// Cavities of the model's own that were opened, and what stays in all hollows of the written file.
+struct CavityFacts {
+  OpenedCavities opened;
+  std::optional<TrappedPools> pools;  // absent if there were no cavities
 };
 
 // Everything that `hollow` tells; rendered as text and as JSON by the command line.
@@ -66,9 +73,10 @@ struct HollowReport {
   OutputFacts output;
   // Of voids that drain; absent where each is sealed.
   std::optional<DrainedVoids> drainage;
-  std::optional<WrittenPlugs> plugs;  // absent unless asked for
-  std::optional<KeptFacts> kept;      // absent without such regions
-  std::optional<TargetFacts> target;  // absent where none was asked for
+  std::optional<CavityFacts> cavities;  // absent unless they were to be opened
+  std::optional<WrittenPlugs> plugs;    // absent unless asked for
+  std::optional<KeptFacts> kept;        // absent without such regions
+  std::optional<TargetFacts> target;    // absent where none was asked for
   Build build = Build::standing;
   std::optional<PrintedCups> cups;  // of voids that drain, in a process that limits them
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.
