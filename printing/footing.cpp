@@ -13,9 +13,7 @@ namespace {
 constexpr double kContactShare = 0.01;
 constexpr double kLeastContact = 0.1;
 
-struct Point {
-  double x = 0, y = 0;
-};
+using Point = Footprint::Point;
 
 // Twice the area of the triangle, positive counter-clockwise.
 double turn(Point a, Point b, Point c) {
@@ -44,7 +42,18 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
 
 }  // namespace
 
-std::optional<double> footing_margin(const Mesh& mesh, Vec3d centre_of_mass) {
+Footprint::Edge Footprint::nearest_edge(double x, double y) const {
+  Edge nearest{.distance = std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    const Point a = corners_[i], b = corners_[(i + 1) % corners_.size()];
+    const double side = std::hypot(b.x - a.x, b.y - a.y);
+    const double distance = turn(a, b, {x, y}) / side;
+    if (distance < nearest.distance) nearest = {i, -(b.y - a.y) / side, (b.x - a.x) / side, distance};
+  }
+  return nearest;
+}
+
+std::optional<Footprint> footprint_of(const Mesh& mesh) {
   const Box3f box = bounding_box(mesh);
   const double ground = static_cast<double>(box.lower.z);
   const double contact_height =
@@ -56,15 +65,15 @@ std::optional<double> footing_margin(const Mesh& mesh, Vec3d centre_of_mass) {
       if (p.z <= ground + contact_height) contact.push_back({p.x, p.y});
     }
   }
-  const std::vector<Point> hull = convex_hull(std::move(contact));
+  std::vector<Point> hull = convex_hull(std::move(contact));
   if (hull.size() < 3) return std::nullopt;
-  const Point mass{centre_of_mass.x, centre_of_mass.y};
-  double margin = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Point a = hull[i], b = hull[(i + 1) % hull.size()];
-    margin = std::min(margin, turn(a, b, mass) / std::hypot(b.x - a.x, b.y - a.y));
-  }
-  return margin;
+  return Footprint(std::move(hull));
+}
+
+std::optional<double> footing_margin(const Mesh& mesh, Vec3d centre_of_mass) {
+  const auto footprint = footprint_of(mesh);
+  if (!footprint) return std::nullopt;
+  return footprint->margin(centre_of_mass.x, centre_of_mass.y);
 }
 
 }  // namespace aerate

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <fmt/ranges.h>
 #include <map>
 #include <memory>
@@ -113,6 +114,12 @@ struct HollowCommand {
         ->check(number_between({}, 1e9, "g"))
         ->type_name("G");
     command
+        .add_flag(
+            "--stand{0}", stand,
+            "Leave out voids until the model stands as it stood: with its centre of mass as far inside of "
+            "what it stands on, and with --stand=MM further by so much (less, if negative)")
+        ->type_name("[=MM]");
+    command
         .add_option(
             "--spheres", spheres,
             "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
@@ -179,6 +186,21 @@ struct HollowCommand {
                        : SavingTarget{SavingTarget::Kind::share, *target_saving / 100};
   }
 
+  // The margin that was given with --stand, 0 without one.
+  std::optional<double> standing(const HollowOptions& options) const {
+    if (stand.empty()) return std::nullopt;
+    const auto margin = parse_number(stand);
+    if (!margin || std::abs(*margin) > kLongest)
+      throw UsageError(fmt::format("--stand={}: that is no margin", stand),
+                       "give millimetres, as in --stand=2, or --stand alone");
+    if (options.modifiers)
+      throw UsageError("--stand with --as modifiers: these remove nothing", "leave out one of them");
+    if (options.target)
+      throw UsageError("--stand and a target both choose voids, and contradict each other",
+                       "leave out one of --stand, --target-mass and --target-saving");
+    return margin;
+  }
+
   // But for the shape of voids.
   HollowOptions unshaped() const {
     HollowOptions options;
@@ -219,6 +241,7 @@ struct HollowCommand {
         choose_material(material.empty() ? options.packing.process.process.material : material, density,
                         price, price_per == "l" ? PriceUnit::litre : PriceUnit::kilogram);
     options.target = target(options);
+    options.stand = standing(options);
     options.heavier = print.heavier();
     return options;
   }
@@ -238,7 +261,8 @@ struct HollowCommand {
     const std::optional<bool> asked = cells.asks_for_cells();
     const bool makes_cells = asked.value_or(is_cells_unasked(options));
     std::vector<HollowOptions> forms{shaped(options, makes_cells)};
-    const bool can_compare = (options.drainage || options.infill_is_known) && !options.target;
+    const bool can_compare =
+        (options.drainage || options.infill_is_known) && !options.target && !options.stand;
     if (cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
     const ProcessChoice& limits = options.packing.process;
     const bool is_sized = !is_default(limits, Limit::min_radius) || !is_default(limits, Limit::max_radius) ||
@@ -312,6 +336,7 @@ struct HollowCommand {
   std::string material;
   std::optional<double> target_mass;
   std::optional<double> target_saving;
+  std::string stand;
   std::optional<double> density;
   std::optional<double> price;
   std::string price_per = "kg";

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 
 #include "cli/json_parts.h"
@@ -297,6 +298,7 @@ Json json_of(const std::optional<CavityFacts>& facts, Build build) {
           {"holes", facts->opened.hole_count()},
           {"removed_by_holes_mm3", facts->opened.removed},
           {"cavities", cavities},
+          {"hollows_mm3", facts->pools ? Json(facts->pools->total) : Json(nullptr)},
           {"pools_of_file", facts->pools ? json_of(*facts->pools, build) : Json(nullptr)}};
 }
 
@@ -367,6 +369,19 @@ Json target_of(const HollowReport& report) {
           {"most_saving_percent", percent(target.all_removed)}};
 }
 
+Json stand_of(const HollowReport& report) {
+  if (!report.stand) return nullptr;
+  const StandFacts& stand = *report.stand;
+  const std::size_t made = report.output.void_count;
+  return {{"asked_mm", stand.asked},
+          {"needed_margin_mm", stand.needed},
+          {"margin_before_mm", stand.margin_before},
+          {"margin_after_mm", or_null(report.balance.margin_after)},
+          {"margin_with_all_mm", stand.margin_with_all},
+          {"voids_to_choose_from", stand.all_voids},
+          {"voids_left_out", stand.all_voids - std::min(stand.all_voids, made)}};
+}
+
 }  // namespace
 
 std::string to_json(const HollowReport& report) {
@@ -395,6 +410,7 @@ std::string to_json(const HollowReport& report) {
                    {"tolerance_used_mm", report.tolerance_used},
                    {"deviation_mm", output.void_deviation}};
   json["target"] = target_of(report);
+  json["stand"] = stand_of(report);
   json["measured"] = json_of(output.clearances);
   json["keep_solid"] = json_of(report.kept);
   json["ceilings"] = json_of(output.ceilings, output.roof_count, report.limits);

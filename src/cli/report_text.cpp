@@ -305,6 +305,16 @@ void add_target(Lines& lines, const HollowReport& report) {
               100 * output.volume_removed / output.volume_before, voids);
 }
 
+void add_stand(Lines& lines, const HollowReport& report) {
+  if (!report.stand || !report.balance.margin_after) return;
+  const StandFacts& stand = *report.stand;
+  lines.add("stand", "at least {:.2f} mm inside what it stands on: {:.2f} -> {:.2f} mm ({:.2f} with all {})",
+            stand.needed, stand.margin_before, *report.balance.margin_after, stand.margin_with_all,
+            count_of(stand.all_voids, "void", "voids"));
+  lines.add("", "{} left out",
+            count_of(stand.all_voids - std::min(stand.all_voids, report.output.void_count), "void", "voids"));
+}
+
 void add_material(Lines& lines, const HollowReport& report) {
   const MaterialUse use = material_use(report);
   const Material& material = report.material;
@@ -403,14 +413,18 @@ std::string to_text(const HollowReport& report) {
   Lines lines;
   add_input(lines, report.input);
   add_limits(lines, report.process);
-  add_packing(lines, "voids",
-              report.cells ? count_of(output.void_count, "cell round a sphere", "cells round spheres")
-                           : count_of(output.void_count, "sphere", "spheres"),
-              radii(output.smallest_radius, output.largest_radius), report.method, report.packing_density,
-              report.packing_device);
+  if (output.void_count == 0)
+    lines.add("voids", "none");
+  else
+    add_packing(lines, "voids",
+                report.cells ? count_of(output.void_count, "cell round a sphere", "cells round spheres")
+                             : count_of(output.void_count, "sphere", "spheres"),
+                radii(output.smallest_radius, output.largest_radius), report.method, report.packing_density,
+                report.packing_device);
   add_volume(lines, report);
   add_target(lines, report);
-  add_clearances(lines, output.clearances, report.limits);
+  add_stand(lines, report);
+  if (output.void_count > 0) add_clearances(lines, output.clearances, report.limits);
   add_kept(lines, report.kept, report.limits);
   add_ceilings(
       lines, output.ceilings,

@@ -86,22 +86,21 @@ MadeVoids make_cells(const PreparedModel& model, const SurfaceIndex& surface, Pa
   return {std::move(packing), std::move(cells), std::move(drainage), std::move(carved)};
 }
 
-MadeVoids make_to_target(const PreparedModel& model, const SurfaceIndex& surface, MadeVoids all,
-                         const ProcessChoice& process, const HollowOptions& options, TargetFacts& facts,
-                         Monitor& monitor) {
-  const std::optional<CellVoids> cells = all.cells;
-  const Packing packing = all.packing;
+// Makes some of those voids again, as they were made. All that is given has to outlive it.
+MakeSome maker_of_some(const PreparedModel& model, const SurfaceIndex& surface, const MadeVoids& all,
+                       const ProcessChoice& process, const HollowOptions& options) {
   const double tolerance = all.carved.tolerance;
-  const auto some_spheres = [&](std::span<const std::uint32_t> voids, Monitor& within) {
+  if (all.cells)
+    return [&model, &surface, &options, tolerance, cells = *all.cells, packing = all.packing](
+               std::span<const std::uint32_t> voids, Monitor& within) {
+      auto [made, drainage, carved] = carve_some_cells(model, surface, with_only(cells, voids),
+                                                       packing.limits, options, tolerance, within);
+      return MadeVoids{packing, std::move(made), std::move(drainage), std::move(carved)};
+    };
+  return [&model, &surface, &process, &options, packing = all.packing](std::span<const std::uint32_t> voids,
+                                                                       Monitor& within) {
     return make_spheres(model, surface, with_only(packing, voids), process, options, within);
   };
-  const auto some_cells = [&](std::span<const std::uint32_t> voids, Monitor& within) {
-    auto [made, drainage, carved] = carve_some_cells(model, surface, with_only(*cells, voids), packing.limits,
-                                                     options, tolerance, within);
-    return MadeVoids{packing, std::move(made), std::move(drainage), std::move(carved)};
-  };
-  return to_target(model, *options.target, options.material, std::move(all),
-                   cells ? MakeSome(some_cells) : MakeSome(some_spheres), facts, monitor);
 }
 
 HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
@@ -111,19 +110,33 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
   auto [packing, surface] = pack_model(model, request, monitor);
   if (options.cells) packing.limits = request.limits();
   HeldNotices held(monitor);
-  Monitor& making = options.target ? held : monitor;
+  Monitor& making = options.target || options.stand ? held : monitor;
   MadeVoids made = options.cells
                        ? make_cells(model, surface, std::move(packing), options, making)
                        : make_spheres(model, surface, std::move(packing), request.process, options, making);
+  made.notices = held.take();
   std::optional<TargetFacts> target;
+  std::optional<StandFacts> stand;
   if (options.target) {
     monitor.stage("target");
-    made.notices = held.take();
-    made =
-        make_to_target(model, surface, std::move(made), request.process, options, target.emplace(), monitor);
+    const MakeSome make_some = maker_of_some(model, surface, made, request.process, options);
+    made = to_target(model, *options.target, options.material, std::move(made), make_some, target.emplace(),
+                     monitor);
+  } else if (options.stand) {
+    monitor.stage("stand");
+    const MakeSome make_some = maker_of_some(model, surface, made, request.process, options);
+    made = to_stand(model, *options.stand, request.limits().roof.up, std::move(made), make_some,
+                    stand.emplace(), monitor);
   }
-  return {std::move(request),    std::move(model),         std::move(surface),     std::move(made.packing),
-          std::move(made.cells), std::move(made.drainage), std::move(made.carved), target};
+  return {std::move(request),
+          std::move(model),
+          std::move(surface),
+          std::move(made.packing),
+          std::move(made.cells),
+          std::move(made.drainage),
+          std::move(made.carved),
+          target,
+          stand};
 }
 
 }  // namespace
@@ -141,6 +154,22 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
       monitor.notice(fmt::format("{}; voxels of {:g} mm are taken", error.what(), *tried.voxel_size));
     }
   }
+}
+
+std::optional<HollowedModel> open_without_voids(const HollowOptions& options, Monitor& monitor) {
+  if (!options.opens_cavities) return std::nullopt;
+  PreparedModel model = prepare_model(options, monitor);
+  if (model.opened->cavities.empty()) return std::nullopt;
+  SurfaceIndex surface(model.mesh);
+  Solid solid{model.mesh, {}};
+  solid.close_part(PartKind::outer);
+  return HollowedModel{options.packing,
+                       std::move(model),
+                       std::move(surface),
+                       Packing{{}, options.packing.limits(), {}, {}},
+                       std::nullopt,
+                       std::nullopt,
+                       CarvedModel{std::move(solid), options.tolerance}};
 }
 
 }  // namespace aerate

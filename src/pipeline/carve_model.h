@@ -9,6 +9,7 @@
 #include "pipeline/drain.h"
 #include "pipeline/options.h"
 #include "pipeline/prepare.h"
+#include "pipeline/stand.h"
 #include "pipeline/target.h"
 
 namespace aerate {
@@ -22,10 +23,15 @@ struct HollowedModel {
   std::optional<CellVoids> cells;        // what is made of them; absent: voids are the packing's own shapes
   std::optional<DrainedVoids> drainage;  // absent: each is sealed
   CarvedModel carved;
-  std::optional<TargetFacts> target;
+  std::optional<TargetFacts> target = {};
+  std::optional<StandFacts> stand = {};
 };
 
 // Loads, inspects, mends, packs, verifies, drains and carves; writes nothing. Throws what `hollow` throws.
 HollowedModel carve_model(const HollowOptions& options, Monitor& monitor);
+
+// The model with its own cavities opened, and no void: where none can be made. nullopt if it has no cavities, or they are
+// not to be opened.
+std::optional<HollowedModel> open_without_voids(const HollowOptions& options, Monitor& monitor);
 
 }  // namespace aerate

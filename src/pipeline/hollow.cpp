@@ -3,9 +3,12 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <optional>
+#include <utility>
 
+#include "check/check_failure.h"
 #include "check/check_opened.h"
 #include "check/check_written.h"
+#include "core/error.h"
 #include "core/listed.h"
 #include "packing/air/inspect_drainage.h"
 #include "pipeline/announced_file.h"
@@ -30,6 +33,14 @@ struct WrittenFile {
   Balance balance;
 };
 
+// By what was measured on the written file.
+void require_standing(const Balance& balance, const StandFacts& stand) {
+  constexpr double kMeasureError = 1e-6;  // mm
+  if (!balance.margin_after || *balance.margin_after < stand.needed - kMeasureError)
+    fail_check("its centre of mass is {:.6g} mm inside what it stands on, it has to be {:.6g} mm",
+               balance.margin_after.value_or(0), stand.needed);
+}
+
 WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, const HollowOptions& options,
                      Monitor& monitor) {
   WrittenFile written;
@@ -50,6 +61,7 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
     written.bytes = std::filesystem::file_size(pending.file().path());
     if (options.modifiers) return;
     written.balance = balance_of(hollowed.model.mesh, written.facts, hollowed.packing.limits.roof.up);
+    if (hollowed.stand) require_standing(written.balance, *hollowed.stand);
     warn_of_tipping(written.balance, written.facts, monitor);
   };
   write_beside(hollowed.carved.solid, pending, solid_format_of(options), check, monitor);
@@ -87,6 +99,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.volume_estimated = model.inspection.parts_overlap();
   report.balance = written.balance;
   report.target = hollowed.target;
+  report.stand = hollowed.stand;
   if (model.kept) report.kept = {model.kept->count, model.kept->volume, written.facts.kept_wall};
   report.print = print;
   report.material = options.material;
@@ -107,14 +120,31 @@ std::optional<PrintedCups> cups_of(const HollowedModel& hollowed, const HollowOp
   return cups;
 }
 
+// The best form; if no void can be made in any, the model with its own cavities opened, where that is asked for.
+HollowedForm carve_or_open(std::span<const HollowOptions> forms, Monitor& monitor) {
+  const HollowOptions& options = forms.front();
+  try {
+    return carve_best_form(forms, monitor);
+  } catch (const Error& error) {
+    const bool asks_for_voids = options.plugs || options.target || options.stand;
+    if (error.code() != ExitCode::nothing_to_remove || asks_for_voids) throw;
+    auto opened = open_without_voids(options, monitor);
+    if (!opened) throw;
+    monitor.notice(
+        fmt::format("no voids are made, only the model's own cavities are opened: {}", error.what()));
+    return {&options, std::move(*opened), std::nullopt};
+  }
+}
+
 // What stays in the result's voids and opened cavities together, which is found out on columns of its air.
-std::optional<CavityFacts> cavities_of(const HollowedModel& hollowed, Monitor& monitor) {
+std::optional<CavityFacts> cavities_of(const HollowedModel& hollowed, const HollowOptions& options,
+                                       Monitor& monitor) {
   constexpr double kWidestHoles = 2;  // in holes of the request
   if (!hollowed.model.opened) return std::nullopt;
   CavityFacts facts{*hollowed.model.opened, std::nullopt};
   if (facts.opened.cavities.empty()) return facts;
   monitor.stage("pools");
-  const double widest = kWidestHoles * 2 * hollowed.drainage->request.hole_radius;
+  const double widest = kWidestHoles * 2 * options.drainage->hole_radius;
   facts.pools = inspect_drainage(hollowed.carved.solid.mesh,
                                  {.up = hollowed.packing.limits.roof.up, .widest_hole = widest}, monitor)
                     .pools;
@@ -152,13 +182,13 @@ HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
   AnnouncedFile pending(options.output, log);
   std::optional<AnnouncedFile> pending_plugs;
   if (options.plugs) pending_plugs.emplace(options.plugs->output, log);
-  const HollowedForm best = carve_best_form(forms, log);
+  const HollowedForm best = carve_or_open(forms, log);
   const WrittenFile written = write_to(pending, best.hollowed, *best.options, log);
   HollowReport report = report_of(best.hollowed, written, *best.options, best.print);
   if (!best.options->modifiers)
     warn_of_cavities(best.hollowed.model.inspection, best.hollowed.request.process.process, log);
   report.cups = cups_of(best.hollowed, *best.options, log);
-  report.cavities = cavities_of(best.hollowed, log);
+  report.cavities = cavities_of(best.hollowed, *best.options, log);
   if (report.cavities && options.plugs) warn_of_unplugged(report.cavities->opened, log);
   if (pending_plugs) {
     report.plugs = write_plugs(*pending_plugs, best.hollowed, *options.plugs, log);

@@ -144,6 +144,9 @@ struct HollowOptions {
   Material material;
   // If given, not for modifiers.
   std::optional<SavingTarget> target;
+  // If given, voids are left out until the model stands as it stood, and further inside of what it stands on by so many mm;
+  // neither for modifiers nor beside a target.
+  std::optional<double> stand;
 
   // How filament is printed.
   PrintSettings print;

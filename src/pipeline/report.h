@@ -18,6 +18,7 @@
 #include "pipeline/options.h"
 #include "pipeline/plug_file.h"
 #include "pipeline/print_prediction.h"
+#include "pipeline/stand.h"
 #include "pipeline/target.h"
 #include "printing/strength.h"
 
@@ -77,6 +78,7 @@ struct HollowReport {
   std::optional<WrittenPlugs> plugs;    // absent unless asked for
   std::optional<KeptFacts> kept;        // absent without such regions
   std::optional<TargetFacts> target;    // absent where none was asked for
+  std::optional<StandFacts> stand;      // absent unless it was asked for
   Build build = Build::standing;
   std::optional<PrintedCups> cups;  // of voids that drain, in a process that limits them
   // Parts overlap: the volume before (and so the one after) is estimated along a raster of rays.

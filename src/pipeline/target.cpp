@@ -74,11 +74,13 @@ NothingToRemoveError out_of_reach(const SavingTarget& target, const Material& ma
                               "give that, a smaller --wall, --gap or --min-radius, or --shape cells");
 }
 
-// Some of the voids; nothing if these alone cannot be made.
+}  // namespace
+
 std::optional<MadeVoids> attempt(const MakeSome& make_some, std::span<const std::uint32_t> voids,
                                  Monitor& monitor) {
   try {
-    HeldNotices held(monitor);
+    Trial trial(monitor);
+    HeldNotices held(trial);
     MadeVoids made = make_some(voids, held);
     made.notices = held.take();
     return made;
@@ -86,8 +88,6 @@ std::optional<MadeVoids> attempt(const MakeSome& make_some, std::span<const std:
     return std::nullopt;
   }
 }
-
-}  // namespace
 
 std::vector<std::uint32_t> fewest_that_reach(std::span<const double> volumes, double sum) {
   std::vector<std::uint32_t> order(volumes.size());
@@ -125,11 +125,10 @@ MadeVoids to_target(const PreparedModel& model, const SavingTarget& target, cons
   // Voids that add up to `low` were too few, to `high` they do.
   double low = needed, high = sum;
   double asked = needed;
-  Trial trial(monitor);
   for (int tries = 0; tries < (drains ? kMostDrained : kMostSealed); ++tries) {
     const std::vector<std::uint32_t> chosen = fewest_that_reach(volumes, asked);
     if (chosen.size() == volumes.size()) break;
-    auto made = attempt(make_some, chosen, trial);
+    auto made = attempt(make_some, chosen, monitor);
     const double removed = made ? removed_by(*made, model) : 0;
     if (removed >= needed) {
       if (removed < best_removed || made->count() < best.count()) {

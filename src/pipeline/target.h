@@ -38,6 +38,10 @@ struct TargetFacts {
 // Makes some voids of a result by themselves, by their indices: ascending.
 using MakeSome = std::function<MadeVoids(std::span<const std::uint32_t> voids, Monitor& monitor)>;
 
+// Some of the voids with the notices that hold for them; nothing if these alone cannot be made. Begins no stage.
+std::optional<MadeVoids> attempt(const MakeSome& make_some, std::span<const std::uint32_t> voids,
+                                 Monitor& monitor);
+
 // Of volumes, the fewest that add up to a sum, the largest first; the last is the smallest that will do. Ascending; all
 // if even those are less.
 std::vector<std::uint32_t> fewest_that_reach(std::span<const double> volumes, double sum);
