@@ -1,5 +1,6 @@
 #include <cstdlib>
 
+#include "core/error.h"
 #include "files/output_file.h"
 #include "printing/slicers/slicers.h"
 #include "printing/slicers/text_file.h"
@@ -14,6 +15,19 @@ constexpr const char* kSearchPath = "CURA_ENGINE_SEARCH_PATH";
 
 bool is_definition(const fs::path& file) {
   return file.string().ends_with(".def.json");
+}
+
+// The engine is given what is found in lines, and nothing of a file without any.
+void require_some_settings(const fs::path& file) {
+  const std::string text = read_text(file);
+  bool has_some = is_definition(file) && !without_blanks(text).empty();
+  for_each_line(text, [&](std::string_view line) {
+    has_some = has_some || (setting_in_line(line) && !line.starts_with('#') && !line.starts_with('['));
+    return !has_some;
+  });
+  if (!has_some)
+    throw InputError(file.string() + ": holds no settings, and the engine would print with its defaults",
+                     "give a .def.json, or lines setting=value");
 }
 
 // CuraEngine looks for what a definition inherits in folders that a variable names.
@@ -108,6 +122,7 @@ SlicerProfile cura_engine() {
   row.programs = {"CuraEngine", "cura-engine", "curaengine"};
   row.settings = {".def.json and lines name=value (CuraEngine)"};
   row.command = command_for;
+  row.check_settings = require_some_settings;
   row.collect = collect;
   row.marks = {"Generated with Cura"};
   row.figures = {{"Filament used", &GcodeFigures::filament_mm, length_of},

@@ -23,7 +23,10 @@ void read_figures(std::string_view comment, const SlicerProfile& slicer, GcodeFi
   for (const FigureLine& line : slicer.figures) {
     const auto text = value_after(comment, line.label);
     if (!text) continue;
-    if (const auto value = line.value_of(*text)) figures.*line.figure = value;
+    const std::optional<double> value = line.value_of(*text);
+    if (!value) continue;
+    std::optional<double>& figure = figures.*line.figure;
+    figure = *value + (line.adds_up ? figure.value_or(0) : 0);
   }
   if (slicer.begins_layer(comment)) ++figures.layers;
 }

@@ -11,6 +11,8 @@
 namespace aerate {
 namespace {
 
+constexpr const char* kExportSettings = "export the settings in use: File, Export, Export Config";
+
 // Keys are words; comments in G-code that have a "=" are mostly not.
 bool is_key(std::string_view text) {
   return !text.empty() &&
@@ -48,17 +50,34 @@ std::string plain_settings(std::string_view text) {
   return plain;
 }
 
-void require_no_bundle(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
-  for_each_line(std::string_view(text).substr(start_of_text(text)), [&](std::string_view line) {
+void require_no_bundle(std::string_view text, const std::string& file) {
+  for_each_line(text.substr(start_of_text(text)), [&](std::string_view line) {
     line = without_blanks(line);
     if (line.starts_with('[') && line.ends_with(']')) {
       throw InputError(
-          file.string() + ": is a bundle of presets (" + on_one_line(line) + "), not the settings of a print",
-          "export the settings in use: File, Export, Export Config");
+          file + ": is a bundle of presets (" + on_one_line(line) + "), not the settings of a print",
+          kExportSettings);
     }
     return true;
   });
+}
+
+void require_setting_lines(const std::filesystem::path& file) {
+  const auto refuse = [&](const char* what, const char* hint = kExportSettings) {
+    throw InputError(file.string() + ": " + what, hint);
+  };
+  const std::string text = read_text(file);
+  const std::string_view content = without_blanks(std::string_view(text).substr(start_of_text(text)));
+  if (content.empty()) refuse("is empty, and the slicer would print with its defaults");
+  if (content.starts_with("PK\x03\x04"))
+    refuse("is a project or another archive, which is not read as settings",
+           "give the project as the model, or export its settings: File, Export, Export Config");
+  if (is_binary_gcode(content))
+    refuse("is binary G-code, whose settings are packed",
+           "switch binary G-code off in the slicer's printer settings, or export the settings");
+  if (content.starts_with('{')) refuse("is JSON, and not settings of this slicer");
+  require_no_bundle(content, file.string());
+  if (plain_settings(text).empty()) refuse("holds no settings, and the slicer would print with its defaults");
 }
 
 bool ends_with_setting(std::string_view gcode) {

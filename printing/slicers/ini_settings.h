@@ -13,8 +13,12 @@ namespace aerate {
 std::string plain_settings(std::string_view text);
 
 // Throws InputError for a bundle of presets ("[print:name]"), of which slicers read nothing when they are given it
-// as settings, so that they print with their defaults.
-void require_no_bundle(const std::filesystem::path& file);
+// as settings, so that they print with their defaults. `file`: how messages call the text.
+void require_no_bundle(std::string_view text, const std::string& file);
+
+// Throws InputError for a file that holds no settings in such lines, of which slicers may say nothing either: a bundle,
+// an empty file, a project, binary G-code, JSON.
+void require_setting_lines(const std::filesystem::path& file);
 
 // Whether the last line of a G-code is one of its settings, and whole.
 bool ends_with_setting(std::string_view gcode);

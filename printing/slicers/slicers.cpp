@@ -92,6 +92,23 @@ void require_settings(const SlicerSettings& settings, const SlicerProfile& slice
   }
 }
 
+std::set<std::string, std::less<>> known_settings(const Slicer& slicer, const fs::path& scratch,
+                                                  Monitor& monitor) {
+  std::set<std::string, std::less<>> names;
+  if (slicer.profile->list_settings == nullptr) return names;
+  const fs::path file = scratch / "all-settings.ini";
+  ChildCommand command = slicer.profile->list_settings(slicer.program, file);
+  command.environment.emplace_back(kSlicedByVariable, "1");
+  std::error_code error;
+  if (run_child(command, monitor).exit_code != 0 || !fs::is_regular_file(file, error)) return names;
+  for_each_line(read_text(file), [&](std::string_view line) {
+    if (const auto setting = setting_in_line(line); setting && !line.starts_with('#'))
+      names.emplace(setting->key);
+    return true;
+  });
+  return names;
+}
+
 bool have_post_processing(const SlicerSettings& settings) {
   bool found = false;
   for (const fs::path& file : settings.files) {

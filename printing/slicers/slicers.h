@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,7 @@ struct FigureLine {
   std::string_view label;
   std::optional<double> GcodeFigures::*figure;
   std::optional<double> (*value_of)(std::string_view text);
+  bool adds_up = false;  // there is such a line for each extruder
 };
 
 // How a slicer keeps the parts of an object, modifiers among them, in a 3MF package.
@@ -54,6 +56,7 @@ struct ProjectFacts {
   std::string object_name;               // as the slicer calls the (first) object; empty if it is not said
   std::vector<std::string> beyond_mesh;  // what a mesh does not carry, in words: "painted seams"
   std::string settings;                  // of the whole print, as lines "key = value"
+  bool has_unread_settings = false;      // it has others, which are not read
 };
 
 // All that is known of a slicer.
@@ -68,6 +71,9 @@ struct SlicerProfile {
   ChildCommand (*command)(const std::filesystem::path& program, const SliceJob& job) = nullptr;
   // If given: throws InputError for a file of settings that the slicer would take for others in silence.
   void (*check_settings)(const std::filesystem::path& file) = nullptr;
+  // If given: makes the slicer write all its settings to `file`, in lines "key = value".
+  ChildCommand (*list_settings)(const std::filesystem::path& program,
+                                const std::filesystem::path& file) = nullptr;
   // If given: puts the G-code of a run where the job wants it, and gives figures that only its output says.
   GcodeFigures (*collect)(const SliceJob& job, const std::string& printed) = nullptr;
 
@@ -120,6 +126,10 @@ Slicer find_slicer(const SlicerProfile& profile, const std::filesystem::path& pa
 
 // Throws InputError for a settings file that cannot be read, or that this slicer would not take for what it is.
 void require_settings(const SlicerSettings& settings, const SlicerProfile& slicer);
+
+// The names of all settings that a slicer knows; empty if it does not tell. `scratch`: an existing folder.
+std::set<std::string, std::less<>> known_settings(const Slicer& slicer, const std::filesystem::path& scratch,
+                                                  Monitor& monitor);
 
 // True if the settings name programs to be run on the G-code.
 bool have_post_processing(const SlicerSettings& settings);

@@ -1,7 +1,13 @@
 #include "pipeline/slice_model.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <fmt/format.h>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "files/formats.h"
@@ -9,6 +15,8 @@
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "printing/slicers/child_process.h"
+#include "printing/slicers/ini_settings.h"
+#include "printing/slicers/setting_names.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
@@ -19,6 +27,20 @@ void require_no_models_name(const std::filesystem::path& output) {
   if (!is_a_models_name(output)) return;
   throw UsageError(output.string() + ": a model's name, and what is written is G-code",
                    "give a name such as " + output.stem().string() + ".gcode");
+}
+
+// The first few names that are not known, each with the one that may be meant.
+std::string some_of(const std::vector<std::string>& unknown,
+                    const std::set<std::string, std::less<>>& known) {
+  constexpr std::size_t kShown = 3;
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, unknown.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + on_one_line(unknown[i]);
+    if (const std::string_view meant = nearest_name(unknown[i], names); !meant.empty())
+      text += fmt::format(" (is {} meant?)", meant);
+  }
+  return unknown.size() > kShown ? text + ", .." : text;
 }
 
 // The settings of a print that a project holds come before the user's. A mesh is all that is sliced of it.
@@ -32,8 +54,14 @@ SlicerSettings settings_with_project(const SliceModelOptions& options, const std
     const ProjectFacts facts = slicer.project(model);
     for (const std::string& setting : facts.beyond_mesh)
       log.notice("the project has " + on_one_line(setting) + ", which is not used: its mesh alone is sliced");
-    if (facts.settings.empty()) continue;
-    if (slicer.name != options.slicer->name) {
+    if (facts.settings.empty() && !facts.has_unread_settings) continue;
+    if (slicer.name != options.slicer->name || facts.has_unread_settings) {
+      if (options.settings.files.empty())
+        throw InputError(
+            fmt::format("{}: the settings in the project are {}'s and not read, so that {} would print with "
+                        "its defaults",
+                        model.string(), slicer.name, options.slicer->name),
+            fmt::format("give {}'s settings as --config", options.slicer->name));
       log.notice("the settings in the project are " + slicer.name + "'s and not used: give " +
                  options.slicer->name + "'s as --config");
       continue;
@@ -45,6 +73,26 @@ SlicerSettings settings_with_project(const SliceModelOptions& options, const std
   }
   for (const std::filesystem::path& file : options.settings.files) settings.files.push_back(file);
   return settings;
+}
+
+// Slicers say nothing of settings that they do not know, and print with their defaults.
+void require_known_settings(const SliceModelOptions& options, const Slicer& slicer,
+                            const std::filesystem::path& scratch, JobLog& log) {
+  if (options.settings.files.empty()) return;
+  const auto known = known_settings(slicer, scratch, log);
+  if (known.empty()) return;
+  for (const std::filesystem::path& file : options.settings.files) {
+    const SettingNames names = names_in(plain_settings(read_text(file)), known);
+    if (names.unknown.empty()) continue;
+    const std::string which = some_of(names.unknown, known);
+    if (names.known == 0)
+      throw InputError(
+          fmt::format("{}: {} knows none of its settings ({})", file.string(), slicer.profile->name, which),
+          "export the settings in use: File, Export, Export Config");
+    log.notice(fmt::format("{}: {} of {} settings are not known to {} and not used: {}", file.string(),
+                           names.unknown.size(), names.unknown.size() + names.known, slicer.profile->name,
+                           which));
+  }
 }
 
 // Hollowing is quick beside slicing, and says sooner that nothing can be removed; then, if the form is left
@@ -77,6 +125,7 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
     log.notice("the post-processing programs of the settings are not run");
   AnnouncedFile pending(options.output, log);
   const PrivateFolder scratch(log);
+  require_known_settings(options, report.slicer, scratch.path(), log);
   const FormJob job{request, report.slicer, settings_with_project(options, scratch.path(), log),
                     scratch.path()};
   report.forms = slice_what_can_be_hollowed(hollowed, job, log);

@@ -4,6 +4,7 @@
 
 #include "printing/slicers/gcode.h"
 #include "printing/slicers/gcode_match.h"
+#include "printing/slicers/print_settings_file.h"
 #include "printing/slicers/slicers.h"
 #include "tests/fuzz/fuzz_input.h"
 
@@ -43,5 +44,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(at != std::string::npos && (at == 0 || with[at - 1] == '\n'), "comments begin a line");
     require(aerate::with_thumbnails_of(std::string(gcode), gcode) == gcode,
             "its own pictures change nothing");
+    const aerate::PrintSettings print = aerate::print_settings_in(gcode, "settings").settings;
+    require(print.infill >= 0 && print.infill <= 1 && print.line_width > 0 && print.layer_height > 0,
+            "a print that was read can be printed");
   });
 }

@@ -1,13 +1,20 @@
 #include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <set>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "core/error.h"
 #include "printing/slicers/gcode_match.h"
 #include "printing/slicers/ini_settings.h"
+#include "printing/slicers/setting_names.h"
 #include "printing/slicers/slicers.h"
 #include "printing/slicers/text_file.h"
+#include "tests/support/caught.h"
 #include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace aerate::test {
 namespace {
@@ -65,6 +72,50 @@ TEST(Gcode, GramsOfSlic3rAreNoMillimetres) {
   EXPECT_DOUBLE_EQ(figures.filament_mm.value(), 1318.5);
   EXPECT_DOUBLE_EQ(figures.filament_cm3.value(), 3.2);
   EXPECT_DOUBLE_EQ(figures.filament_g.value(), 3.9);
+}
+
+// It has lines for each extruder.
+TEST(Gcode, ExtrudersOfSlic3rAreAddedUp) {
+  const GcodeFigures figures = figures_of(
+      "; filament used = 79.4mm (0.2cm3)\n; filament used = 0.2g\n; filament cost = 0.1\n"
+      "; filament used = 98.0mm (0.3cm3)\n; filament used = 0.3g\n; filament cost = 0.2\n"
+      "; total filament cost = 0.3\n",
+      slic3r());
+  EXPECT_DOUBLE_EQ(figures.filament_mm.value(), 177.4);
+  EXPECT_DOUBLE_EQ(figures.filament_cm3.value(), 0.5);
+  EXPECT_DOUBLE_EQ(figures.filament_g.value(), 0.5);
+  EXPECT_DOUBLE_EQ(figures.cost.value(), 0.1 + 0.2);
+}
+
+TEST(Gcode, FilesWithoutSettingsAreRefused) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) {
+    const auto file = folder.write("my.ini", text);
+    return message_of<InputError>([&] { require_setting_lines(file); });
+  };
+  EXPECT_TRUE(contains(refusal(""), "my.ini: is empty"));
+  EXPECT_TRUE(contains(refusal("\n \n"), "is empty"));
+  EXPECT_TRUE(contains(refusal("# fill_density = 15%\n"), "holds no settings"));
+  EXPECT_TRUE(contains(refusal("G1 X1 E1\n; fill_density = 15%\n"), "holds no settings"));
+  EXPECT_TRUE(contains(refusal("PK\x03\x04..."), "is a project"));
+  EXPECT_TRUE(contains(refusal("{\"a\": \"b = c\"}"), "is JSON"));
+  EXPECT_TRUE(contains(refusal("GCDE\x01"), "is binary G-code"));
+  EXPECT_TRUE(contains(refusal("[print:a]\nfill_density = 15%\n"), "is a bundle of presets"));
+  EXPECT_NO_THROW(require_setting_lines(folder.write("my.ini", "fill_density = 15%\n")));
+  EXPECT_NO_THROW(require_setting_lines(folder.write("my.gcode", kPrusa)));
+}
+
+TEST(Gcode, NamesOfSettingsThatAreNotKnown) {
+  const std::set<std::string, std::less<>> known{"fill_density", "perimeters"};
+  const SettingNames names =
+      names_in("perimeters = 2\nfill_densty = 15%\nprint_settings_id = my\ninherits = other\n", known);
+  EXPECT_EQ(names.known, 1U);
+  EXPECT_EQ(names.unknown, std::vector<std::string>{"fill_densty"});
+  const std::vector<std::string_view> all(known.begin(), known.end());
+  EXPECT_EQ(nearest_name("fill_densty", all), "fill_density");
+  EXPECT_EQ(nearest_name("fill_dnesity", all), "fill_density");
+  EXPECT_EQ(nearest_name("infill", all), "");
+  EXPECT_EQ(nearest_name(std::string(1000000, 'a'), all), "");
 }
 
 TEST(Gcode, FiguresOfCura) {

@@ -11,12 +11,14 @@
 #include "core/mesh.h"
 #include "files/formats.h"
 #include "files/load.h"
+#include "files/three_mf.h"
 #include "printing/slicers/slicers.h"
 #include "tests/slicer/fake_slicer.h"
 #include "tests/slicer/slicing.h"
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/zip.h"
 
 // `aerate slice` and `aerate hook` with real slicers.
 namespace aerate::test {
@@ -403,7 +405,11 @@ TEST_F(Slicing, TheSettingsInAProjectAreUsed) {
   EXPECT_TRUE(contains(result.err, "the settings in the project are used"));
   EXPECT_NEAR(Json::parse(result.out)["forms"][0]["filament_mm"].get<double>(), 1292.73, 0.5);
   if (!is_installed("slic3r")) return;
-  EXPECT_TRUE(contains(slice(project("with_settings"), "slic3r", {}).err,
+  const ProcessResult refused = slice(project("with_settings"), "slic3r", {});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_TRUE(contains(refused.err, "the settings in the project are prusa-slicer's and not read"));
+  const fs::path config = folder_.write("own.ini", "layer_height = 0.3\n");
+  EXPECT_TRUE(contains(slice(project("with_settings"), "slic3r", {"--config", config}).err,
                        "the settings in the project are prusa-slicer's and not used"));
 }
 
@@ -417,6 +423,75 @@ TEST_F(Slicing, ABundleOfPresetsIsNoFileOfSettings) {
     EXPECT_TRUE(contains(result.err, "is a bundle of presets ([print:my])"));
   }
   EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
+TEST_F(Slicing, FilesWithoutSettingsAreRefused) {
+  const FakeSlicer fake(folder_);
+  struct Case {
+    std::string slicer, file, text, said;
+  };
+  for (const Case& each :
+       {Case{"prusa-slicer", "a.ini", "", "is empty"}, Case{"slic3r", "a.ini", "", "is empty"},
+        Case{"prusa-slicer", "a.3mf", "PK\x03\x04", "is a project"},
+        Case{"prusa-slicer", "a.json", "{\"wall_loops\": \"2\"}", "is JSON"},
+        Case{"orca-slicer", "a.json", "{}", "holds no settings"},
+        Case{"orca-slicer", "a.json", "wall_loops = 2", "is no JSON object"},
+        Case{"cura-engine", "a.txt", "layer height\n", "holds no settings"}}) {
+    const ProcessResult result =
+        slice(block(), each.slicer,
+              {"--slicer-path", fake.program(), "--config", folder_.write(each.file, each.text)});
+    EXPECT_EQ(result.exit_code, 3) << each.said << result.err;
+    EXPECT_TRUE(contains(result.err, each.said));
+  }
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
+// Slicers say nothing of them, and print with their defaults.
+TEST_F(Slicing, SettingsThatTheSlicerDoesNotKnow) {
+  for (const char* slicer : {"prusa-slicer", "slic3r"}) {
+    if (!is_installed(slicer)) continue;
+    const ProcessResult none =
+        slice(block(), slicer, {"--config", folder_.write("bad.ini", "fill_densty = 15%\n")});
+    EXPECT_EQ(none.exit_code, 3) << none.err;
+    EXPECT_TRUE(contains(none.err, "knows none of its settings (fill_densty (is fill_density meant?))"));
+    EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+    const ProcessResult some =
+        slice(block(), slicer,
+              {"--config", folder_.write("some.ini", "layer_height = 0.3\na = 1\nb = 2\nc = 3\nd = 4\n")});
+    EXPECT_EQ(some.exit_code, 0) << some.err;
+    EXPECT_TRUE(contains(
+        some.err, "4 of 5 settings are not known to " + std::string(slicer) + " and not used: a, b, c, .."));
+    fs::remove(output());
+  }
+}
+
+TEST_F(Slicing, AProjectOfAnotherSlicerNeedsSettings) {
+  const FakeSlicer fake(folder_);
+  fake.hands_out("solid", fake_gcode(1000));
+  fake.hands_out("voids", fake_gcode(900));
+  fake.hands_out("modifiers", fake_gcode(950));
+  const auto project = [&](const char* entry, const char* text) {
+    const fs::path path = folder_.path() / "plain.3mf";
+    write_mesh(make_box({0, 0, 0}, {22, 20, 18}), path, MeshFormat::three_mf);
+    const auto model = read_3mf_entry(path, kThreeMfModel);
+    return folder_.write("project.3mf",
+                         make_zip({{"[Content_Types].xml", read_3mf_entry(path, "[Content_Types].xml")},
+                                   {"_rels/.rels", read_3mf_entry(path, "_rels/.rels")},
+                                   {kThreeMfModel, model},
+                                   {entry, text}}));
+  };
+  const fs::path orca = project("Metadata/project_settings.config", "{\"wall_loops\": \"3\"}");
+  const std::vector<std::string> with_fake{"--slicer-path", fake.program()};
+  const ProcessResult refused = slice(orca, "prusa-slicer", with_fake);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_TRUE(contains(refused.err, "the settings in the project are orca-slicer's and not read"));
+  EXPECT_TRUE(contains(refused.err, "--config"));
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+  std::vector<std::string> configured = with_fake;
+  configured.insert(configured.end(), {"--config", folder_.write("my.ini", "perimeters = 3\n")});
+  const ProcessResult given = slice(orca, "prusa-slicer", configured);
+  EXPECT_EQ(given.exit_code, 0) << given.err;
+  EXPECT_TRUE(contains(given.err, "orca-slicer's and not used"));
 }
 
 TEST_F(Slicing, Slic3rRunsNoProgramOfTheSettings) {
