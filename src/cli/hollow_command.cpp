@@ -81,7 +81,7 @@ struct HollowCommand {
         keep_solid(command),
         drainage(command, config),
         cells(command, words_of_cells()),
-        print(command),
+        print(command, config),
         run_options(command),
         modifier_options(config) {
     command.add_option("-o,--output", output, "The result: " + endings_that_are_written())
@@ -218,8 +218,7 @@ struct HollowCommand {
     if (void_form == "voids") modifier_options.require_none("without --as modifiers");
     if (void_form == "modifiers")
       options.modifiers = {&*std::ranges::find(slicers(), std::vector{flavor}, flavor_of), modifier_infill};
-    options.print = print.settings(options.packing.process.process);
-    options.infill_is_known = print.knows_infill();
+    options = print.applied_to(std::move(options));
     // Modifiers leave the model solid: nothing is trapped in them.
     if (options.modifiers && !drainage.plugs().empty())
       throw UsageError("--as modifiers leaves no holes that --plugs could close", "leave out one of them");
@@ -233,7 +232,10 @@ struct HollowCommand {
     } else {
       options = drainage.applied_to(std::move(options));
     }
-    print.require_lines_that_fit(options.packing.limits());
+    if (options.line_width_origin)
+      options.packing.process = followed_by_lines(std::move(options.packing.process),
+                                                  options.print.line_width, *options.line_width_origin);
+    print.require_lines_that_fit(options);
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
@@ -242,7 +244,6 @@ struct HollowCommand {
                         price, price_per == "l" ? PriceUnit::litre : PriceUnit::kilogram);
     options.target = target(options);
     options.stand = standing(options);
-    options.heavier = print.heavier();
     return options;
   }
 
@@ -312,6 +313,7 @@ struct HollowCommand {
     JobFiles files{packing.inputs(model.path), {output}};
     for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
     files.inputs.push_back({"list of spheres", spheres});
+    files.inputs.push_back({"file of print settings", print.file()});
     if (!drainage.plugs().empty()) files.outputs.emplace_back(drainage.plugs());
     run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
   }

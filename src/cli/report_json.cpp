@@ -5,6 +5,7 @@
 #include "cli/reports.h"
 #include "core/ceiling.h"
 #include "core/overhang.h"
+#include "pipeline/print_verdict.h"
 #include "printing/slicers/slicers.h"
 #include "printing/strength.h"
 
@@ -156,9 +157,28 @@ Json in_percent(const std::optional<double>& share) {
   return share ? Json(100 * *share) : Json(nullptr);
 }
 
+Json json_of(const std::vector<PrintOrigin>& origins) {
+  Json json = Json::object();
+  for (const PrintOrigin& each : origins)
+    json[each.name] = {{"origin", each.origin}, {"key", each.key.empty() ? Json(nullptr) : Json(each.key)}};
+  return json;
+}
+
+Json verdict_json(const PrintPrediction& print) {
+  return {{"text", verdict_in_words(print)},
+          {"infill_percent", 100 * print.usual.infill},
+          {"infill_is_assumed", !print.described},
+          {"filament_before_mm3", print.usual.before_mm3},
+          {"filament_after_mm3", print.usual.after_mm3},
+          {"filament_change_percent", 100 * print.usual.share()},
+          {"solid_change_percent", 100 * print.solid.share()},
+          {"as_modifiers_change_percent", in_percent(print.as_modifiers)}};
+}
+
 Json json_of(const PrintPrediction& print) {
   const PrintSettings& settings = print.settings;
-  return {{"described", print.described},
+  return {{"verdict", verdict_json(print)},
+          {"described", print.described},
           {"infill_percent", 100 * settings.infill},
           {"modifier_infill_percent", 100 * settings.modifier_infill},
           {"infill_pattern", settings.pattern == InfillPattern::gyroid ? "gyroid" : "lines"},
@@ -427,6 +447,7 @@ std::string to_json(const HollowReport& report) {
   json["strength_and_balance"] =
       report.modifiers ? Json(nullptr) : json_of(report.balance, output, blocks_like(report));
   json["print"] = report.print ? json_of(*report.print) : Json(nullptr);
+  if (report.print) json["print"]["origins"] = json_of(report.print_origins);
   json["material"] = material_of(report);
   add_closing(json, report.stages, report.notices);
   return dump(json);

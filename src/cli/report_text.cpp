@@ -7,6 +7,7 @@
 #include "core/listed.h"
 #include "core/printable.h"
 #include "pipeline/memory.h"
+#include "pipeline/print_verdict.h"
 #include "printing/slicers/slicers.h"
 
 namespace aerate::cli {
@@ -242,6 +243,32 @@ std::string in_words(const PrintSettings& settings) {
                      settings.layer_height, settings.top_layers, settings.bottom_layers);
 }
 
+// What describes the print, with where it came from; what is of one origin together. Of a file the keys are in the JSON.
+void add_print_origins(Lines& lines, const std::vector<PrintOrigin>& origins) {
+  std::vector<std::pair<std::string, std::string>> values_by_origin;
+  for (const PrintOrigin& each : origins) {
+    auto found =
+        std::ranges::find(values_by_origin, each.origin, &std::pair<std::string, std::string>::first);
+    if (found == values_by_origin.end()) found = values_by_origin.insert(found, {each.origin, ""});
+    found->second += (found->second.empty() ? "" : ", ") + each.value;
+  }
+  const char* label = "print";
+  for (const auto& [origin, values] : values_by_origin) {
+    lines.add(label, "{} ({})", values, origin);
+    label = "";
+  }
+}
+
+// What there is to know first, of a print of filament.
+void add_verdict(Lines& lines, const HollowReport& report) {
+  if (!report.print) return;
+  const char* label = "verdict";
+  for (const std::string& line : verdict_of(*report.print)) {
+    lines.add(label, "{}", line);
+    label = "";
+  }
+}
+
 // What the figures for material mean, and from which infill on they save.
 void add_print(Lines& lines, const HollowReport& report) {
   if (!report.print) {
@@ -332,8 +359,11 @@ void add_material(Lines& lines, const HollowReport& report) {
     if (report.print) add_predicted_filament(lines, *report.print);
     return;
   }
-  lines.add("material", "{} {:.1f} -> {:.1f} g, cost {:.2f} -> {:.2f} (at {})", report.material.name,
-            use.mass_before_g, use.mass_after_g, use.cost_before, use.cost_after, figures);
+  // A sparse print may become heavier with the same voids.
+  const bool is_if_solid = report.print && !use.predicted;
+  lines.add("material", "{}{} {:.1f} -> {:.1f} g, cost {:.2f} -> {:.2f} (at {})", report.material.name,
+            is_if_solid ? ", if printed solid:" : "", use.mass_before_g, use.mass_after_g, use.cost_before,
+            use.cost_after, figures);
   add_print(lines, report);
 }
 
@@ -411,8 +441,10 @@ void add_findings(Lines& lines, const DrainageFindings& findings) {
 std::string to_text(const HollowReport& report) {
   const OutputFacts& output = report.output;
   Lines lines;
+  add_verdict(lines, report);
   add_input(lines, report.input);
   add_limits(lines, report.process);
+  add_print_origins(lines, report.print_origins);
   if (output.void_count == 0)
     lines.add("voids", "none");
   else

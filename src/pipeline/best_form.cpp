@@ -1,6 +1,8 @@
 #include "pipeline/best_form.h"
 
+#include <array>
 #include <fmt/format.h>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,10 +21,61 @@ constexpr double kMuchLeftOut = 0.2;
 // One escape hole is worth this share of what is removed: each is to be plugged or seen.
 constexpr double kWorthOfHole = 0.005;
 
-HollowedForm carve_form(const HollowOptions& options, Monitor& monitor) {
-  HollowedForm form{&options, carve_model(options, monitor), std::nullopt};
+// Of the radius from which voids pay: where lines are wide and walls thin, such small ones do too (docs/economics.md).
+constexpr std::array kPayingShares{1.0, 0.7, 0.5, 0.35};
+
+// Where voids make a print heavier by more than this share, smaller ones do so more.
+constexpr double kMuchHeavier = 0.03;
+
+HollowedForm carve_with(double paying_share, const HollowOptions& options, Monitor& monitor) {
+  HollowOptions shared = options;
+  shared.paying_share = paying_share;
+  HollowedForm form{&options, carve_model(shared, monitor), std::nullopt};
   form.print = predict_print(form.hollowed.model.mesh, form.hollowed.carved.solid, form.hollowed.packing,
                              options, monitor);
+  return form;
+}
+
+// Whether voids are left out that would cost more filament than they save by themselves.
+bool leaves_out_by_radius(const HollowOptions& options) {
+  return options.infill_is_known && options.heavier == HeavierPrint::refuse && !options.modifiers &&
+         !options.cells && options.packing.spheres.empty();
+}
+
+// With the voids from the radius on that pays as a rule or, where the print does not become lighter by these, by smaller
+// ones: they may share walls and skins. What the whole print takes decides.
+HollowedForm carve_what_pays(const HollowOptions& options, Monitor& monitor) {
+  std::optional<HollowedForm> lightest;
+  double least = std::numeric_limits<double>::infinity();  // of filament, mm3
+  std::vector<std::string> notices;
+  std::optional<NothingToRemoveError> refusal;
+  for (const double share : kPayingShares) {
+    HeldNotices held(monitor);
+    try {
+      HollowedForm form = carve_with(share, options, held);
+      const PrintPrediction print = form.print.value();
+      if (print.filament_after_mm3 < least) {
+        least = print.filament_after_mm3;
+        lightest = std::move(form);
+        notices = held.take();
+      }
+      if (!print.heavier() || print.usual.share() > kMuchHeavier) break;
+    } catch (const NothingToRemoveError& error) {
+      if (!refusal) refusal = error;
+    }
+  }
+  if (!lightest) throw NothingToRemoveError(*refusal);
+  HeldNotices verdict(monitor);
+  judge(lightest->print.value(), options, verdict);
+  for (const std::string& notice : notices) monitor.notice(notice);
+  verdict.pass_on();
+  return std::move(*lightest);
+}
+
+HollowedForm carve_form(const HollowOptions& options, Monitor& monitor) {
+  if (leaves_out_by_radius(options)) return carve_what_pays(options, monitor);
+  HollowedForm form = carve_with(1, options, monitor);
+  if (form.print) judge(*form.print, options, monitor);
   return form;
 }
 

@@ -102,6 +102,7 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.stand = hollowed.stand;
   if (model.kept) report.kept = {model.kept->count, model.kept->volume, written.facts.kept_wall};
   report.print = print;
+  report.print_origins = options.print_origins;
   report.material = options.material;
   return report;
 }
@@ -178,6 +179,7 @@ HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
   static_cast<void>(solid_format_of(options));  // refuses what cannot be written
   if (options.plugs) require_writable(*options.plugs);
   JobLog log(monitor);
+  for (const std::string& remark : options.print_remarks) log.notice(remark);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);
   std::optional<AnnouncedFile> pending_plugs;

@@ -110,6 +110,14 @@ struct PlugRequest {
   PlugFit fit;
 };
 
+// A setting of the print in words, and where it came from.
+struct PrintOrigin {
+  std::string name;    // "infill"
+  std::string value;   // "15 %"
+  std::string origin;  // "command line", "default", or a file's name
+  std::string key;     // what it is called in that file
+};
+
 struct HollowOptions {
   std::filesystem::path model;
   std::filesystem::path output;
@@ -152,7 +160,13 @@ struct HollowOptions {
   PrintSettings print;
   // Whether its infill was said; else figures are for solid material.
   bool infill_is_known = false;
+  // Where the width of its lines came from, if that was said: walls and gaps follow it (followed_by_lines).
+  std::optional<std::string> line_width_origin;
+  std::vector<PrintOrigin> print_origins;  // of all that describes the print, if anything of it was given
+  std::vector<std::string> print_remarks;  // what is to be said of where it was read
   HeavierPrint heavier = HeavierPrint::refuse;
+  // Voids are made from this share on of the radius from which they save in such a print (docs/economics.md).
+  double paying_share = 1;
 };
 
 }  // namespace aerate

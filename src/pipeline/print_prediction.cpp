@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/upright.h"
+#include "pipeline/print_verdict.h"
 #include "printing/slicers/object_parts.h"
 
 namespace aerate {
@@ -29,13 +30,9 @@ std::string saving_infill(const std::optional<double>& infill) {
   return fmt::format("save above {:.0f} % infill", percent);
 }
 
-// Predictions are off by so much of the solid print at most (docs/economics.md).
-constexpr double kUncertain = 0.015;
-
 constexpr const char* kOtherWays =
-    "--as modifiers -o MODEL.3mf makes them volumes of 0 % infill, which have no walls and save at any "
-    "infill; "
-    "--force writes these voids all the same";
+    "--as modifiers -o MODEL.3mf makes them volumes of 0 % infill, which have no walls and save at "
+    "nearly any infill; --force writes these voids all the same";
 
 [[noreturn]] void refuse_all(const PackingLimits& limits, const PrintSettings& settings,
                              const std::optional<double>& least_radius) {
@@ -60,9 +57,6 @@ std::string change_in_words(const PrintPrediction& prediction) {
                      in_percent(prediction.settings.infill),
                      prediction.described ? "" : ", which is assumed");
 }
-
-// What modifiers are assumed to be printed in unless the print is described.
-constexpr double kUsualInfill = 0.15;
 
 PrintSettings settings_of(const HollowOptions& options) {
   PrintSettings settings = options.print;
@@ -95,9 +89,32 @@ FilamentUse use_with_voids(const Mesh& outer, const Solid& solid, const UprightF
   return filament_use(outer, settings, kFilamentPixel, upright(voids_of(solid), frame, turned));
 }
 
+FilamentChange change_at(double infill, const FilamentUse& whole, const FilamentUse& hollow,
+                         PrintSettings settings) {
+  settings.infill = infill;
+  return {infill, whole.volume_mm3(settings), hollow.volume_mm3(settings)};
+}
+
+// How much more a print takes with the voids as modifiers of 0 % infill, as a share. `outer`, and what was found of
+// it: as it is printed.
+double change_as_modifiers(const Mesh& outer, const FilamentUse& whole, const Solid& solid,
+                           const UprightFrame& frame, PrintSettings settings, double infill) {
+  settings.modifier_infill = 0;
+  Mesh turned;
+  const FilamentUse modified =
+      filament_use(outer, settings, kFilamentPixel, upright(voids_of(solid), frame, turned));
+  return change_at(infill, whole, modified, settings).share();
+}
+
 std::string what_else(const PrintPrediction& prediction, const HollowOptions& options) {
-  if (!options.modifiers)
-    return fmt::format("these voids {}; {}", saving_infill(prediction.break_even_infill), kOtherWays);
+  const std::string where = saving_infill(prediction.break_even_infill);
+  if (!options.modifiers && prediction.as_modifiers)
+    return fmt::format(
+        "these voids {}; as volumes of 0 % infill, which have no walls (--as modifiers -o MODEL.3mf), they "
+        "would "
+        "change it by {:+.1f} %; --force writes these voids all the same",
+        where, in_percent(*prediction.as_modifiers));
+  if (!options.modifiers) return fmt::format("these voids {}; {}", where, kOtherWays);
   return fmt::format(
       "infill is joined along the border of modifiers, which costs more than these save: they {}; larger "
       "ones ({}) or {} cost less; --force writes these all the same",
@@ -124,18 +141,30 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
   // together save is for the prediction.
   constexpr double kCellsReach = 1.5;
   const double largest = (options.cells ? kCellsReach : 1) * limits.max_radius;
-  if (!least_radius || *least_radius > largest) refuse_all(limits, settings, least_radius);
+  if (!least_radius || options.paying_share * *least_radius > largest)
+    refuse_all(limits, settings, least_radius);
   if (options.cells) return request;
-  const double raised = rounded_up(*least_radius);
+  const double raised = rounded_up(options.paying_share * *least_radius);
   if (raised <= limits.min_radius) return request;
-  monitor.notice(fmt::format(
-      "at {:g} % infill a void saves filament only above a radius of {:g} mm: smaller ones are not "
-      "made",
-      in_percent(settings.infill), raised));
+  const double percent = in_percent(settings.infill);
+  if (options.paying_share == 1) {
+    monitor.notice(fmt::format(
+        "at {:g} % infill a void saves filament only above a radius of {:g} mm: smaller ones are not "
+        "made",
+        percent, raised));
+  } else {
+    monitor.notice(
+        fmt::format("at {:g} % infill voids as a rule save filament above a radius of {:.2f} mm, which gave "
+                    "nothing here: "
+                    "those from {:g} mm on are made",
+                    percent, *least_radius, raised));
+  }
   request.pays_in = settings;
   request.process.limits[Limit::min_radius] = {
       std::min(raised, limits.max_radius), "docs/economics.md",
-      fmt::format("break-even at {:g} % infill", in_percent(settings.infill))};
+      options.paying_share == 1
+          ? fmt::format("break-even at {:g} % infill", percent)
+          : fmt::format("{:g} of break-even at {:g} % infill", options.paying_share, percent)};
   return request;
 }
 
@@ -163,6 +192,7 @@ std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& sol
   monitor.stage("predict");
   PrintPrediction prediction;
   prediction.described = options.infill_is_known;
+  prediction.of_modifiers = options.modifiers.has_value();
   prediction.settings = settings_of(options);
   const PrintSettings& settings = prediction.settings;
   const UprightFrame frame(packing.limits.roof.up);
@@ -179,7 +209,18 @@ std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& sol
   if (!options.modifiers) prediction.break_even_radius = break_even_radius(settings);
   prediction.time = time_change(
       whole, hollow, options.modifiers ? std::span<const Sphere>() : std::span(packing.spheres), settings);
+  const double infill = prediction.described ? settings.infill : kUsualInfill;
+  prediction.usual = change_at(infill, whole, hollow, settings);
+  prediction.solid = change_at(1, whole, hollow, settings);
+  // Voids that drain are no bodies by themselves.
+  if (prediction.usual.heavier() && !options.modifiers && !options.drainage)
+    prediction.as_modifiers = change_as_modifiers(printed, whole, solid, frame, settings, infill);
+  monitor.check_interrupted();
 
+  return prediction;
+}
+
+void judge(const PrintPrediction& prediction, const HollowOptions& options, Monitor& monitor) {
   const bool tells = prediction.described || options.modifiers;
   if (tells && prediction.heavier()) {
     if (prediction.described && options.heavier == HeavierPrint::refuse) {
@@ -187,13 +228,15 @@ std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& sol
                                  what_else(prediction, options));
     }
     monitor.notice("the print becomes heavier: " + change_in_words(prediction));
-  } else if (tells && prediction.filament_after_mm3 > (1 - kUncertain) * prediction.filament_before_mm3) {
+  } else if (tells &&
+             prediction.filament_after_mm3 > (1 - kUncertainShare) * prediction.filament_before_mm3) {
     monitor.notice(fmt::format(
         "the print may become heavier: {} is predicted, to within {:g} points; `aerate slice` asks "
         "your slicer",
-        change_in_words(prediction), in_percent(kUncertain)));
+        change_in_words(prediction), in_percent(kUncertainShare)));
+  } else if (!tells && prediction.usual.heavier()) {
+    monitor.notice(fmt::format("{} (--infill says what yours is)", verdict_in_words(prediction)));
   }
-  return prediction;
 }
 
 }  // namespace aerate

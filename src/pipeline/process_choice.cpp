@@ -224,6 +224,19 @@ ProcessChoice evenly_large(ProcessChoice choice, double fitting) {
   return choice;
 }
 
+ProcessChoice followed_by_lines(ProcessChoice choice, double line_width, const std::string& origin) {
+  const Process& process = choice.process;
+  if (process.drainage == Drainage::needed || find_process(process.name) == nullptr) return choice;
+  const auto follow = [&](Limit limit, int lines, const char* in_words) {
+    if (!is_default(choice, limit)) return;
+    choice.limits.at(limit) = {lines * line_width, "docs/processes.md",
+                               fmt::format("{} lines of {:.4g} mm ({})", in_words, line_width, origin)};
+  };
+  follow(Limit::wall, 3, "three");
+  follow(Limit::gap, 2, "two");
+  return choice;
+}
+
 ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& settings) {
   const Process& process = choice.process;
   if (process.drainage == Drainage::needed || find_process(process.name) == nullptr ||

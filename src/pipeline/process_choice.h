@@ -83,6 +83,10 @@ bool is_lowered_for_cells(const ProcessChoice& choice);
 // file gave the wall, it is as thick as these. What lies between would be filled by a strip of infill that carries nothing.
 ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& settings);
 
+// For a built-in process that prints lines whose width is known, mm: unless the user gave them, its wall is as thick as
+// three of these and its gap as two. `origin`: where the width came from.
+ProcessChoice followed_by_lines(ProcessChoice choice, double line_width, const std::string& origin);
+
 // The same job with voids that drain: under the limits of tubes too, those given or the process's. Throws
 // UsageError if one is neither, or if holes are narrower than channels.
 ProcessChoice with_tubes(ProcessChoice choice, const Limits& given);

@@ -87,6 +87,7 @@ struct HollowReport {
   Balance balance;
   // Absent for a process that prints no filament.
   std::optional<PrintPrediction> print;
+  std::vector<PrintOrigin> print_origins;  // empty where nothing of the print was given
   Material material;
   std::vector<StageCost> stages;
   std::vector<std::string> notices;

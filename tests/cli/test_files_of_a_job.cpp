@@ -30,7 +30,9 @@ TEST(FilesOfAJob, NoFileThatIsReadIsReplacedByWhateverName) {
   const std::string spheres = job.input("spheres.csv", "x,y,z,radius\n15,15,15,5\n");
   const std::string config = job.input("options.ply", "[hollow]\nwall = 1.5\n");
   const std::string process = job.input("own.json", R"({"base": "fdm"})");
-  const std::vector<std::string> options{"--spheres", spheres, "--config", config, "--process", process};
+  const std::string settings = job.input("print.ini", "perimeters = 3\n");
+  const std::vector<std::string> options{"--spheres", spheres, "--config",         config,
+                                         "--process", process, "--print-settings", settings};
   const auto refused = [&](const std::string& output, std::vector<std::string> more,
                            const std::string& said) {
     std::vector<std::string> command{AERATE_EXECUTABLE, "hollow", model, "-o", output};
@@ -45,7 +47,8 @@ TEST(FilesOfAJob, NoFileThatIsReadIsReplacedByWhateverName) {
        std::vector<std::pair<std::string, std::string>>{{model, "model"},
                                                         {spheres, "list of spheres"},
                                                         {config, "configuration file"},
-                                                        {process, "process file"}}) {
+                                                        {process, "process file"},
+                                                        {settings, "file of print settings"}}) {
     const std::string before = read_bytes(file);
     const std::filesystem::path hard = job.folder() / "hard.ply", soft = job.folder() / "soft.ply";
     std::filesystem::create_hard_link(file, hard);

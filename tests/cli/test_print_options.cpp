@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -31,27 +32,58 @@ Json report_of(const Job& job, const Mesh& model, const std::vector<std::string>
   return result.exit_code == 0 ? Json::parse(result.out) : Json();
 }
 
-void expect_refused(const Job& job, const std::vector<std::string>& arguments, int exit_code,
-                    const std::vector<std::string>& said) {
-  const ProcessResult result = hollow(job, block(), arguments);
+void expect_refused(const Job& job, const Mesh& model, const std::vector<std::string>& arguments,
+                    int exit_code, const std::vector<std::string>& said) {
+  const ProcessResult result = hollow(job, model, arguments);
   EXPECT_EQ(result.exit_code, exit_code) << result.err;
   for (const std::string& part : said) EXPECT_TRUE(contains(result.err, part));
   EXPECT_EQ(entries_of(job.outputs()), std::vector<std::string>{});
 }
 
-TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
+void expect_refused(const Job& job, const std::vector<std::string>& arguments, int exit_code,
+                    const std::vector<std::string>& said) {
+  expect_refused(job, block(), arguments, exit_code, said);
+}
+
+// By what the whole print takes, where there is room for voids that may save among others.
+TEST(PrintOptions, SparsePrintsThatWouldBecomeHeavierAreRefusedWithFigures) {
   const Job job;
   expect_refused(job, {"--infill", "15%"}, kNothing,
-                 {"15 % infill", "above a radius of 18", "the largest that fits has radius 13.8 mm",
-                  "voids of 14 mm save above", "modifier", "--force"});
+                 {"would become heavier", "cm3 of filament (+", "15 % infill", "these voids save above",
+                  "modifier", "--force"});
+  expect_refused(job, {"--infill", "20%", "--shape", "spheres"}, kNothing,
+                 {"would become heavier", "20 % infill", "these voids save above", "modifier", "--force"});
+  const ProcessResult refused = hollow(job, block(), {"--infill", "20%", "--shape", "spheres"});
+  EXPECT_FALSE(contains(refused.err, "are made")) << refused.err;
+}
+
+TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
+  const Job job;
+  const auto cube = [](float edge) { return make_box({0, 0, 0}, {edge, edge, edge}); };
+  expect_refused(job, cube(7), {"--infill", "30%", "--shape", "spheres"}, kNothing,
+                 {"30 % infill", "above a radius of 8.6", "the largest that fits has radius 2.3 mm",
+                  "voids of 2.3 mm save above", "modifier", "--force"});
   expect_refused(job, {"--infill", "15%", "--max-radius", "3.5"}, kNothing,
                  {"15 % infill", "above a radius of 18", "3.5 mm (--max-radius)",
                   "voids of 3.5 mm save above", "modifier", "--force"});
-  expect_refused(job, {"--infill", "20%", "--shape", "spheres"}, kNothing,
-                 {"20 % infill", "radius 13.8 mm fits", "not with the roof that it needs",
-                  "voids of 14 mm save above", "modifier", "--force"});
   expect_refused(job, {"--infill", "0%"}, kNothing,
                  {"0 % infill", "however large it is", "where they fit", "modifier", "--force"});
+}
+
+// Walls and skins of a void near the model's own are partly printed anyway, the more so where lines are wide.
+TEST(PrintOptions, SmallerVoidsAreMadeWhereThePredictedPrintBecomesLighter) {
+  const Job job;
+  // PrusaSlicer: 6.74 -> 6.00 cm3, -11.0 %.
+  const ProcessResult result = run(job.hollow(
+      sample("pawn.obj"), {"--scale", "0.8", "--infill", "40%", "--layer-height", "0.3", "--line-width",
+                           "0.65", "--wall", "1.2", "--gap", "0.9", "--shape", "spheres", "--json", "-"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  const Json& print = report["print"];
+  EXPECT_NEAR(print["filament_change_percent"].get<double>(), -11, 2);
+  EXPECT_LT(report["voids"]["max_radius_mm"], print["break_even_radius_mm"]);
+  EXPECT_TRUE(contains(report["process"].dump(), "0.7 of break-even at 40 % infill"));
+  EXPECT_TRUE(contains(report["notices"].dump(), "which gave nothing here"));
 }
 
 // Infill of modifiers joins its lines along every small border.
@@ -202,6 +234,118 @@ TEST(PrintOptions, WithoutInfillTheReportNamesTheInfillAboveWhichTheseVoidsSave)
   const ProcessResult text = hollow(job, block(), {});
   EXPECT_TRUE(contains(text.out, "as solid material (100 % infill)"));
   EXPECT_TRUE(contains(text.out, "these voids save filament above"));
+}
+
+// The first line says what a usual print becomes, on standard error too where that is heavier.
+TEST(PrintOptions, TheVerdictComesFirst) {
+  const Job job;
+  const ProcessResult text = hollow(job, block(), {});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_TRUE(text.out.starts_with("verdict     at 15 % infill this print takes ")) << text.out;
+  EXPECT_TRUE(contains(text.out, " % more filament; it saves from "));
+  EXPECT_TRUE(contains(text.out, "; solid: -"));
+  EXPECT_TRUE(contains(text.out, "for sparse prints: "));
+  EXPECT_TRUE(contains(text.out, "PLA, if printed solid: "));
+  EXPECT_TRUE(contains(text.err, "at 15 % infill this print takes "));
+  EXPECT_TRUE(contains(text.err, "lightning infill"));
+
+  const Json report = report_of(job, block(), {});
+  const Json& verdict = report["print"]["verdict"];
+  EXPECT_EQ(verdict["infill_percent"], 15.0);
+  EXPECT_TRUE(verdict["infill_is_assumed"].get<bool>());
+  EXPECT_GT(verdict["filament_change_percent"].get<double>(), 10);
+  EXPECT_NEAR(verdict["solid_change_percent"].get<double>(),
+              report["print"]["filament_change_percent"].get<double>(), 1e-9);
+  EXPECT_TRUE(contains(report["notices"].dump(), verdict["text"].get<std::string>()));
+  // The same as where the infill is said.
+  const Json forced = report_of(job, block(), {"--infill", "15", "--force", "--shape", "spheres"});
+  EXPECT_NEAR(forced["print"]["filament_change_percent"].get<double>(),
+              verdict["filament_change_percent"].get<double>(), 1e-9);
+  EXPECT_FALSE(forced["print"]["verdict"]["infill_is_assumed"].get<bool>());
+}
+
+// What the same voids take as modifiers is what they take when they are written as such.
+TEST(PrintOptions, TheVerdictOfModifiersIsThatOfTheSameVoids) {
+  const Job job;
+  const std::vector<std::string> voids{"--shape", "spheres",      "--wall", "1.2",      "--max-radius",
+                                       "8",       "--min-radius", "3",      "--infill", "15"};
+  const Json as_voids = report_of(job, block(), with(voids, {"--force"}));
+  const double predicted = as_voids["print"]["verdict"]["as_modifiers_change_percent"].get<double>();
+  EXPECT_LT(predicted, -2);
+  const ProcessResult written = run(with({AERATE_EXECUTABLE, "hollow", job.input("model.stl", block()), "-o",
+                                          job.output("out.3mf"), "--as", "modifiers", "--json", "-"},
+                                         voids));
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  const Json print = Json::parse(written.out)["print"];
+  EXPECT_NEAR(print["filament_change_percent"].get<double>(), predicted, 0.01);
+  EXPECT_TRUE(contains(print["verdict"]["text"], "lightning infill, where it has one, may save more"));
+  EXPECT_TRUE(print["verdict"]["as_modifiers_change_percent"].is_null());
+}
+
+TEST(PrintOptions, TheVerdictIsForTheInfillThatIsSaid) {
+  const Job job;
+  const ProcessResult dense = hollow(job, block(), {"--infill", "60"});
+  ASSERT_EQ(dense.exit_code, 0) << dense.err;
+  EXPECT_TRUE(dense.out.starts_with("verdict     at 60 % infill this print takes ")) << dense.out;
+  EXPECT_TRUE(contains(dense.out, " % less filament; solid: -"));
+  EXPECT_FALSE(contains(dense.err, "more filament"));
+  const ProcessResult resin = hollow(job, make_box({0, 0, 0}, {40, 40, 40}), {"--process", "sls"});
+  EXPECT_TRUE(resin.out.starts_with("model ")) << resin.out;
+}
+
+TEST(PrintOptions, ASlicersFileDescribesThePrint) {
+  const Job job;
+  const std::string settings =
+      job.input("my.ini",
+                "# generated by PrusaSlicer 2.5.0 on 2026-01-02 at 03:04:05 UTC\nfill_density = 60%\n"
+                "perimeters = 3\nextrusion_width = 0.5\nlayer_height = 0.25\nnozzle_diameter = 0.4\n")
+          .string();
+  const Json report = report_of(job, block(), {"--print-settings", settings, "--perimeters", "1"});
+  const Json& print = report["print"];
+  EXPECT_TRUE(print["described"].get<bool>());
+  EXPECT_EQ(print["infill_percent"], 60.0);
+  EXPECT_EQ(print["perimeters"], 1);
+  EXPECT_EQ(print["line_width_mm"], 0.5);
+  EXPECT_EQ(print["layer_height_mm"], 0.25);
+  EXPECT_EQ(print["origins"]["infill"]["origin"], "my.ini");
+  EXPECT_EQ(print["origins"]["infill"]["key"], "fill_density");
+  EXPECT_EQ(print["origins"]["perimeters"]["origin"], "command line");
+  EXPECT_EQ(print["origins"]["top_layers"]["origin"], "default");
+  const ProcessResult text = hollow(job, block(), {"--print-settings", settings, "--perimeters", "1"});
+  EXPECT_TRUE(contains(text.out, "infill 60 %, lines of 0.5 mm, layers of 0.25 mm (my.ini)"));
+  EXPECT_TRUE(contains(text.out, "1 perimeter (command line)"));
+  // The same by options.
+  const Json by_options = report_of(
+      job, block(), {"--infill", "60", "--perimeters", "1", "--line-width", "0.5", "--layer-height", "0.25"});
+  EXPECT_EQ(by_options["print"]["filament_after_mm3"], print["filament_after_mm3"]);
+
+  std::filesystem::remove(job.output());
+  const ProcessResult misspelt =
+      hollow(job, block(), {"--print-settings", job.input("bad.ini", "fill_densty = 15%\n").string()});
+  EXPECT_EQ(misspelt.exit_code, 3);
+  EXPECT_TRUE(contains(misspelt.err, "is fill_density meant?")) << misspelt.err;
+  expect_refused(job, {"--print-settings", settings, "--process", "sla"}, kUsage,
+                 {"--print-settings", "--process sla"});
+  expect_refused(job, {"--print-settings", settings, "--json", settings}, kUsage,
+                 {"would replace the file of print settings"});
+}
+
+TEST(PrintOptions, WallAndGapFollowAWidthThatIsGiven) {
+  const Job job;
+  const auto limits_with = [&](const std::vector<std::string>& options) {
+    return report_of(job, block(), with(options, {"--max-voids", "4"}))["limits"];
+  };
+  EXPECT_EQ(limits_with({})["wall_mm"], 1.2);
+  const Json wide = limits_with({"--line-width", "0.6"});
+  EXPECT_NEAR(wide["wall_mm"].get<double>(), 1.8, 1e-12);
+  EXPECT_NEAR(wide["gap_mm"].get<double>(), 1.2, 1e-12);
+  const Json given = limits_with({"--line-width", "0.6", "--wall", "1", "--gap", "0.7"});
+  EXPECT_EQ(given["wall_mm"], 1.0);
+  EXPECT_EQ(given["gap_mm"], 0.7);
+  const Json own = limits_with(
+      {"--line-width", "0.6", "--process", job.input("own.json", R"({"base": "fdm", "wall": 2})").string()});
+  EXPECT_EQ(own["wall_mm"], 2.0);
+  EXPECT_EQ(own["gap_mm"], 0.9);
 }
 
 TEST(PrintOptions, FiguresForMaterialAreThoseOfThePrint) {
