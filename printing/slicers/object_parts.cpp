@@ -14,10 +14,12 @@ Mesh with_void_shells_turned(Mesh mesh, const Solid& solid) {
   return mesh;
 }
 
-std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent) {
+std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent,
+                                       const std::string& pattern) {
   const std::size_t outer = solid.outer_triangle_count();
   return {{"model", 0, outer, false, ""},
-          {"voids", outer, solid.mesh.triangles.size() - outer, true, fmt::format("{}%", infill_percent)}};
+          {"voids", outer, solid.mesh.triangles.size() - outer, true, fmt::format("{}%", infill_percent),
+           pattern}};
 }
 
 std::string metadata_of(const pugi::xml_node& node, const char* key) {

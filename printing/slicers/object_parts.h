@@ -24,6 +24,7 @@ struct ObjectPart {
   std::size_t triangle_count = 0;
   bool is_modifier = false;  // not a body, but where the print has this infill instead of its own
   std::string infill;        // "12.5%"; empty for a body
+  std::string pattern = {};  // of a modifier, as slicers call it; empty where it is the print's own
 
   std::size_t end() const { return first_triangle + triangle_count; }
   bool operator==(const ObjectPart&) const = default;
@@ -32,8 +33,12 @@ struct ObjectPart {
 // A solid's mesh with its void shells turned outward, as bodies of their own, and back.
 Mesh with_void_shells_turned(Mesh mesh, const Solid& solid);
 
+// What slicers call the infill that grows up like trees, only where it has something to hold.
+inline constexpr const char* kLightning = "lightning";
+
 // The parts of such a mesh: the model and one modifier that holds all voids (their shells are disjoint).
-std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent);
+std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent,
+                                       const std::string& pattern = {});
 
 std::string metadata_of(const pugi::xml_node& node, const char* key);
 

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "files/three_mf.h"
 #include "printing/slicers/ini_settings.h"
 #include "printing/slicers/slicers.h"
+#include "printing/slicers/text_file.h"
 
 namespace aerate {
 namespace {
@@ -20,6 +23,7 @@ bool is_complete(std::string_view gcode) {
 ChildCommand command_for(const std::filesystem::path& program, const SliceJob& job) {
   ChildCommand command{{program, "--export-gcode"}, {}, job.scratch};
   for (const std::filesystem::path& file : job.settings.files) command.add({"--load", file});
+  if (!job.pattern.empty()) command.add({"--fill-pattern", job.pattern});
   if (job.keep_place) command.add({"--dont-arrange"});
   command.add({"--post-process", "", "--output", job.gcode, job.model});
   return command;
@@ -37,11 +41,16 @@ std::string volume_of(const ObjectPart& part, const std::string& name) {
    <metadata type="volume" key="volume_type" value="ParameterModifier" />
    <metadata type="volume" key="modifier" value="1" />
    <metadata type="volume" key="fill_density" value="{3}" />
-  </volume>
+{4}  </volume>
+)";
+  // What is small in a modifier would become solid by the print's own setting.
+  constexpr const char* kPattern = R"(   <metadata type="volume" key="fill_pattern" value="{}" />
+   <metadata type="volume" key="solid_infill_below_area" value="0" />
 )";
   const std::size_t last = part.end() - 1;
-  return part.is_modifier ? fmt::format(kModifier, name, part.first_triangle, last, part.infill)
-                          : fmt::format(kBody, name, part.first_triangle, last);
+  if (!part.is_modifier) return fmt::format(kBody, name, part.first_triangle, last);
+  const std::string pattern = part.pattern.empty() ? "" : fmt::format(kPattern, part.pattern);
+  return fmt::format(kModifier, name, part.first_triangle, last, part.infill, pattern);
 }
 
 // An object of this name, as XML has it.
@@ -60,14 +69,15 @@ ThreeMfExtras with_part_list(const std::string& object_name, const std::string& 
   return extras;
 }
 
-ThreeMfExtras extras_for(const ObjectPart& model, const ObjectPart& voids, const std::string& object_name) {
-  return with_part_list(object_name, xml_value(object_name.empty() ? model.name : object_name),
-                        volume_of(model, model.name) + volume_of(voids, voids.name));
+std::string file_for(const Mesh& mesh, const ObjectPart& model, const ObjectPart& voids,
+                     const std::string& object_name) {
+  return to_3mf(mesh, with_part_list(object_name, xml_value(object_name.empty() ? model.name : object_name),
+                                     volume_of(model, model.name) + volume_of(voids, voids.name)));
 }
 
-ThreeMfExtras named(const ObjectPart& model, const std::string& object_name) {
+std::string named(const Mesh& mesh, const ObjectPart& model, const std::string& object_name) {
   const std::string shown = xml_value(object_name);
-  return with_part_list(object_name, shown, volume_of(model, shown));
+  return to_3mf(mesh, with_part_list(object_name, shown, volume_of(model, shown)));
 }
 
 std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
@@ -78,7 +88,7 @@ std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
     const std::size_t last = volume.attribute("lastid").as_ullong();
     const bool is_modifier = metadata_of(volume, "volume_type") == "ParameterModifier";
     parts.push_back({metadata_of(volume, "name"), first, last + 1 - first, is_modifier,
-                     metadata_of(volume, "fill_density")});
+                     metadata_of(volume, "fill_density"), metadata_of(volume, "fill_pattern")});
   }
   return parts;
 }
@@ -164,6 +174,44 @@ std::optional<std::string> labelled_object(std::string_view gcode) {
   return end == std::string_view::npos ? std::nullopt : std::optional(std::string(line.substr(0, end)));
 }
 
+std::vector<SparsePattern> sparse_patterns() {
+  return {{kLightning, "holds up tops, no strength"},
+          {"supportcubic", "denser under tops"},
+          {"adaptivecubic", "denser near the surface"}};
+}
+
+// "0.45mm" of a comment that says how wide lines are, "20%", "5"
+std::optional<double> number_of(std::string_view gcode, std::string_view key) {
+  const std::optional<std::string> text = setting_in(gcode, key);
+  return text ? number_at_front(*text) : std::nullopt;
+}
+
+// What is not said is as in the slicer's profiles.
+std::optional<DescribedPrint> described_print(std::string_view gcode) {
+  const std::optional<double> infill = number_of(gcode, "fill_density");
+  if (!infill || *infill < 0 || *infill > 100) return std::nullopt;
+  DescribedPrint print;
+  PrintSettings& settings = print.settings;
+  settings.infill = *infill / 100;
+  print.pattern = setting_in(gcode, "fill_pattern").value_or("");
+  settings.pattern =
+      print.pattern.empty() || print.pattern == "gyroid" ? InfillPattern::gyroid : InfillPattern::lines;
+  const std::vector<SparsePattern> sparse = sparse_patterns();
+  print.is_predictable = std::ranges::find(sparse, print.pattern, &SparsePattern::name) == sparse.end();
+  const auto count = [&](std::string_view key, int& value) {
+    if (const auto number = number_of(gcode, key)) value = static_cast<int>(*number);
+  };
+  count("perimeters", settings.perimeters);
+  count("top_solid_layers", settings.top_layers);
+  count("bottom_solid_layers", settings.bottom_layers);
+  const auto length = [&](std::string_view key, double& value) {
+    if (const auto number = number_of(gcode, key); number && *number > 0) value = *number;
+  };
+  length("layer_height", settings.layer_height);
+  length("perimeters extrusion width", settings.line_width);
+  return print;
+}
+
 }  // namespace
 
 SlicerProfile prusa_slicer() {
@@ -180,8 +228,14 @@ SlicerProfile prusa_slicer() {
   row.repeats_gcode = true;
   row.project = project_facts;
   row.labelled_object = labelled_object;
-  row.modifiers = {
-      "prusa", {kPartList, "volume", other_kind, is_modifier, triangles_of}, extras_for, named, read_parts};
+  row.modifiers = {.flavor = "prusa",
+                   .volumes = VolumeList{kPartList, "volume", other_kind, is_modifier, triangles_of},
+                   .file = file_for,
+                   .named = named,
+                   .read = read_parts,
+                   .has_lightning = true};
+  row.patterns = sparse_patterns();
+  row.described_print = described_print;
   return row;
 }
 

@@ -51,7 +51,7 @@ std::string space_left(const fs::path& file) {
 std::vector<VolumeList> volume_lists() {
   std::vector<VolumeList> lists;
   for (const SlicerProfile& slicer : slicers()) {
-    if (slicer.modifiers) lists.push_back(slicer.modifiers->volumes);
+    if (slicer.modifiers && slicer.modifiers->volumes) lists.push_back(*slicer.modifiers->volumes);
   }
   return lists;
 }

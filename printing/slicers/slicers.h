@@ -8,9 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/mesh.h"
 #include "core/monitor.h"
 #include "files/load.h"
-#include "files/three_mf.h"
+#include "printing/print_settings.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/gcode.h"
 #include "printing/slicers/object_parts.h"
@@ -26,6 +27,7 @@ struct SliceJob {
   std::filesystem::path model;  // STL or 3MF, mm
   std::filesystem::path gcode;  // to be written
   SlicerSettings settings;
+  std::string pattern = {};       // of sparse infill, instead of that of the settings, if not empty
   bool keep_place = false;        // x and y as in the model instead of the middle of the bed
   std::filesystem::path scratch;  // an existing folder for the slicer's files
 };
@@ -38,17 +40,37 @@ struct FigureLine {
   bool adds_up = false;  // there is such a line for each extruder
 };
 
-// How a slicer keeps the parts of an object, modifiers among them, in a 3MF package.
+// How a slicer keeps the parts of an object, modifiers among them, in a file.
 struct ModifierFormat {
-  std::string flavor;  // as on the command line
-  VolumeList volumes;
-  // For `to_3mf` of a mesh that these parts cover in order. The object is called as the model's part is if
+  std::string flavor;           // as on the command line
+  std::string ending = ".3mf";  // of the file
+  // How a package says which volumes are none of the model; absent for a file that is not read as a model.
+  std::optional<VolumeList> volumes;
+  // The bytes of a file of a mesh that these parts cover in order. The object is called as the model's part is if
   // `object_name` is empty.
-  ThreeMfExtras (*extras)(const ObjectPart& model, const ObjectPart& voids, const std::string& object_name);
-  // For `to_3mf` of a mesh that is one body, so that the slicer calls the object by this name.
-  ThreeMfExtras (*named)(const ObjectPart& model, const std::string& object_name);
-  // The parts that such a package names. Throws FailureError for one that is not as it was written.
-  std::vector<ObjectPart> (*read)(const std::filesystem::path& package);
+  std::string (*file)(const Mesh& mesh, const ObjectPart& model, const ObjectPart& voids,
+                      const std::string& object_name) = nullptr;
+  // The same of a mesh that is one body, so that the slicer calls the object by this name; null where it calls an object
+  // by its file.
+  std::string (*named)(const Mesh& mesh, const ObjectPart& model, const std::string& object_name) = nullptr;
+  // The parts that such a file names. Throws FailureError for one that is not as it was written.
+  std::vector<ObjectPart> (*read)(const std::filesystem::path& file) = nullptr;
+  // The mesh of such a file, parts in order; null for 3MF, which is read as any model is. Throws FailureError as well.
+  Mesh (*read_mesh)(const std::filesystem::path& file) = nullptr;
+  bool has_lightning = false;  // the infill kLightning
+};
+
+// An infill pattern that the slicer has for prints that take little.
+struct SparsePattern {
+  std::string name;      // as in its settings, and on the command line
+  std::string good_for;  // in a few words
+};
+
+// A print as a G-code describes it.
+struct DescribedPrint {
+  PrintSettings settings;
+  std::string pattern;          // of sparse infill, as the slicer calls it
+  bool is_predictable = false;  // whether that takes what its density says (docs/economics.md)
 };
 
 // What a project says of its model beside the mesh.
@@ -93,6 +115,10 @@ struct SlicerProfile {
 
   // Absent for a slicer that reads no modifiers; voids are surfaces, which all of them take.
   std::optional<ModifierFormat> modifiers;
+  // Those that `command` can be asked for, the one that takes least first.
+  std::vector<SparsePattern> patterns;
+  // If given: what a G-code says that it was printed as; nothing for one that does not say its infill.
+  std::optional<DescribedPrint> (*described_print)(std::string_view gcode) = nullptr;
 };
 
 // The rows, each made in a room of its own.

@@ -9,6 +9,10 @@
 
 namespace aerate::cli {
 
+bool may_be_cells(const PackingRequest& request) {
+  return !request.method->on_lattice && request.spheres.empty() && request.stop.target_density >= 1;
+}
+
 CellCommandOptions::CellCommandOptions(CLI::App& command, const CellWords& words) {
   command.add_option("--shape", shape_, words.shape)
       ->check(CLI::IsMember({"spheres", "cells"}))

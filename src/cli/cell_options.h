@@ -22,6 +22,9 @@ struct ShapedRequest {
   std::optional<double> tolerance;   // as given, or the default of cells, mm
 };
 
+// Whether a packing leaves it open to make cells of it.
+bool may_be_cells(const PackingRequest& request);
+
 // --shape, --cell-size, --fillet, --tolerance, for every command that makes cells.
 class CellCommandOptions {
  public:

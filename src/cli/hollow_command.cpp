@@ -23,6 +23,7 @@
 #include "files/formats.h"
 #include "packing/methods.h"
 #include "pipeline/hollow.h"
+#include "pipeline/lightning_modifiers.h"
 #include "printing/materials.h"
 #include "printing/slicers/slicers.h"
 
@@ -102,7 +103,16 @@ struct HollowCommand {
                              ->check(CLI::IsMember(of_slicers(flavor_of)))
                              ->type_name("FLAVOR")
                              ->capture_default_str());
-    modifier_options.add(add_modifier_infill(command, modifier_infill));
+    modifier_infill_option = add_modifier_infill(command, modifier_infill);
+    modifier_options.add(modifier_infill_option);
+    modifier_options.add(
+        command
+            .add_option("--modifier-pattern", modifier_pattern,
+                        "Modifiers: infill pattern inside them, if not the print's own: lightning, which "
+                        "holds up what is above, so that by default they are one cell without a roof, of "
+                        "--modifier-infill 15")
+            ->check(CLI::IsMember({kLightning}))
+            ->type_name("PATTERN"));
     command
         .add_option("--target-saving", target_saving,
                     "Stop with the fewest voids that remove this share of the model's volume, percent")
@@ -253,7 +263,12 @@ struct HollowCommand {
     options.cells = shaped.cells;
     options.tolerance = shaped.tolerance.value_or(options.tolerance);
     require_tolerance_for(options.packing.process, options.tolerance);
-    return options;
+    if (modifier_pattern.empty() || !options.modifiers) return options;
+    if (!options.modifiers->slicer->modifiers->has_lightning)
+      throw UsageError(fmt::format("{} has no lightning infill", options.modifiers->slicer->name),
+                       "leave out --modifier-pattern");
+    const bool is_said = modifier_infill_option->count() > 0;
+    return holding_lightning(std::move(options), is_said ? modifier_infill : kLightningInfill);
   }
 
   // The preferred one first. Unless it was said what voids are, there is another where it can be told which is better.
@@ -264,7 +279,7 @@ struct HollowCommand {
     std::vector<HollowOptions> forms{shaped(options, makes_cells)};
     const bool can_compare =
         (options.drainage || options.infill_is_known) && !options.target && !options.stand;
-    if (cells.says_how_cells_are() || !can_compare || !may_be_cells(options)) return forms;
+    if (cells.says_how_cells_are() || !can_compare || !may_be_cells(options.packing)) return forms;
     const ProcessChoice& limits = options.packing.process;
     const bool is_sized = !is_default(limits, Limit::min_radius) || !is_default(limits, Limit::max_radius) ||
                           options.packing.stop.max_count != PackingStop{}.max_count;
@@ -294,14 +309,9 @@ struct HollowCommand {
     forms.push_back(std::move(larger));
   }
 
-  static bool may_be_cells(const HollowOptions& options) {
-    const PackingRequest& request = options.packing;
-    return !request.method->on_lattice && request.spheres.empty() && request.stop.target_density >= 1;
-  }
-
   // Whether voids are cells, if --shape does not say.
   static bool is_cells_unasked(const HollowOptions& options) {
-    if (!may_be_cells(options)) return false;
+    if (!may_be_cells(options.packing)) return false;
     if (options.modifiers) return true;
     const PackingRequest& request = options.packing;
     const PackingLimits limits = request.limits();
@@ -330,6 +340,8 @@ struct HollowCommand {
   std::string void_form = "voids";
   std::string flavor = of_slicers(flavor_of).front();
   double modifier_infill = ModifierOptions{}.infill_percent;
+  const CLI::Option* modifier_infill_option = nullptr;
+  std::string modifier_pattern;
   std::string spheres;
   std::optional<double> max_triangles;
   std::string surface = "auto";

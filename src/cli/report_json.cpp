@@ -369,9 +369,12 @@ Json modifiers_of(const HollowReport& report) {
   const MaterialUse use = material_use(report);
   return {{"flavor", report.modifiers->slicer->modifiers->flavor},
           {"infill_percent", report.modifiers->infill_percent},
+          {"pattern", report.modifiers->hold_lightning ? Json(kLightning) : Json(nullptr)},
           {"volume_mm3", output.volume_removed},
           {"volume_percent", 100 * output.volume_removed / output.volume_before},
-          {"most_saved_g_per_infill_percent", (use.mass_before_g - use.mass_after_g) / 100}};
+          {"most_saved_g_per_infill_percent", report.modifiers->hold_lightning
+                                                  ? Json(nullptr)
+                                                  : Json((use.mass_before_g - use.mass_after_g) / 100)}};
 }
 
 // What was asked for in one of its two units, and reached in both.

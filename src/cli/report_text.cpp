@@ -306,9 +306,10 @@ void add_volume(Lines& lines, const HollowReport& report) {
   const char* estimated =
       report.volume_estimated ? "; the model's volume is an estimate, since parts overlap" : "";
   if (report.modifiers) {
-    lines.add("modifiers", "{:.1f} of {:.1f} mm3 ({:.2f} %) with {:g} % infill instead of the print's own{}",
+    lines.add("modifiers",
+              "{:.1f} of {:.1f} mm3 ({:.2f} %) with {:g} %{} infill instead of the print's own{}",
               output.volume_removed, output.volume_before, percent, report.modifiers->infill_percent,
-              estimated);
+              report.modifiers->hold_lightning ? " lightning" : "", estimated);
     const SlicerProfile& slicer = *report.modifiers->slicer;
     lines.add("", "for {}{}; nothing is removed, and no walls are printed round them",
               listed(slicer.family, "and"), slicer.untested ? " (untested)" : "");
@@ -349,6 +350,10 @@ void add_material(Lines& lines, const HollowReport& report) {
       material.priced_per == PriceUnit::litre
           ? fmt::format("{:g} g/cm3 and {:g} a litre", material.density_g_cm3, material.price_per_litre())
           : fmt::format("{:g} g/cm3 and {:g} a kg", material.density_g_cm3, material.price_per_kg);
+  if (report.modifiers && report.modifiers->hold_lightning) {
+    lines.add("material", "lightning infill takes less than its density says; 'aerate slice' tells what");
+    return;
+  }
   if (report.modifiers) {
     // Infill that the slicer makes solid for other reasons (under a top, over a bottom) stays.
     lines.add("material",

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/ranges.h>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,9 +27,31 @@ std::vector<std::string> described(const SlicerProfile& slicer) {
   return {fmt::format("{} (also {}, by --slicer-path)", slicer.name, slicer.runs_also)};
 }
 
+const std::map<std::string, Comparison> kComparisons{
+    {"forms", Comparison::forms}, {"lightning", Comparison::lightning}, {"patterns", Comparison::patterns}};
+
+std::vector<std::string> names_of_patterns() {
+  std::vector<std::string> names = of_slicers([](const SlicerProfile& slicer) {
+    std::vector<std::string> own;
+    for (const SparsePattern& pattern : slicer.patterns) own.push_back(pattern.name);
+    return own;
+  });
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 struct SliceCommand {
   SliceCommand(CLI::App& command, const ConfigFile& config)
-      : model(command), form(command, config), run_options(command) {
+      : model(command), form(command, config, names_of_patterns()), run_options(command) {
+    command
+        .add_option("--compare", comparison,
+                    "What is sliced beside solid, voids and modifiers: forms (nothing), lightning (the solid "
+                    "model in the slicer's lightning infill, one more run), or patterns (in all its sparse "
+                    "patterns, and modifiers that hold lightning, four more runs)")
+        ->check(CLI::IsMember(kComparisons))
+        ->type_name("WHAT")
+        ->capture_default_str();
     command.add_option("-o,--output", output, "The G-code")->required()->type_name("FILE");
     command.add_option("--slicer", slicer, listed(of_slicers(described), "or"))
         ->required()
@@ -50,6 +73,7 @@ struct SliceCommand {
     options.slicer = &*std::ranges::find(slicers(), slicer, &SlicerProfile::name);
     options.settings.files.assign(settings.begin(), settings.end());
     options.request = form.request(model);
+    options.comparison = kComparisons.at(comparison);
     return options;
   }
 
@@ -65,6 +89,7 @@ struct SliceCommand {
   RunOptions run_options;
   std::string output;
   std::string slicer;
+  std::string comparison = "lightning";
   std::vector<std::string> settings;
 };
 

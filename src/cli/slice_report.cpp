@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <fmt/format.h>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/json_parts.h"
 #include "cli/reports.h"
@@ -25,19 +29,79 @@ std::string saving(const SlicedForm& solid, const SlicedForm& form) {
   return fmt::format("{:+.2f} %", -100 * filament_saved(solid.figures, form.figures));
 }
 
-std::string table(const std::vector<SlicedForm>& forms) {
-  constexpr const char* kRow = "{:<12}{:>13}{:>9}{:>9}{:>9}{:>13}{:>8}  {}\n";
+// What the solid print is, as far as that is known.
+std::string infill_of(const std::optional<DescribedPrint>& print) {
+  if (!print) return {};
+  const std::string infill = fmt::format("{:g} %", 100 * print->settings.infill);
+  return print->pattern.empty() ? infill : infill + " " + print->pattern;
+}
+
+// Why a form has no figures.
+std::string reason(const SkippedForm& form) {
+  if (form.predicted) return fmt::format("predicted {:+.0f} %, not sliced", 100 * *form.predicted);
+  return "not sliced: " + form.why;
+}
+
+// uses: what each form is good for; none for a report that does not tell
+std::string table(const FormsReport& report, const std::vector<std::string>& uses = {}) {
+  constexpr const char* kRow = "{:<{}}{:>13}{:>9}{:>9}{:>9}{:>13}{:>8}  {:<10}  {}\n";
+  constexpr const char* kSkippedRow = "{:<{}}{}\n";
+  std::size_t width = 12;
+  for (const SlicedForm& form : report.forms) width = std::max(width, form.name().size() + 2);
+  for (const SkippedForm& form : report.skipped) width = std::max(width, form.name.size() + 2);
   std::string text =
-      fmt::format(fmt::runtime(kRow), "", "filament mm", "cm3", "g", "cost", "time", "layers", "");
-  for (const SlicedForm& form : forms) {
+      fmt::format(fmt::runtime(kRow), "", width, "filament mm", "cm3", "g", "cost", "time", "layers", "", "");
+  for (std::size_t i = 0; i < report.forms.size(); ++i) {
+    const SlicedForm& form = report.forms[i];
     const GcodeFigures& figures = form.figures;
-    text += fmt::format(fmt::runtime(kRow), name_of(form.form), cell(figures.filament_mm, 2),
+    text += fmt::format(fmt::runtime(kRow), form.name(), width, cell(figures.filament_mm, 2),
                         cell(figures.filament_cm3, 2), cell(figures.filament_g, 2), cell(figures.cost, 2),
-                        duration(figures.seconds), figures.layers, saving(forms.front(), form));
+                        duration(figures.seconds), figures.layers, saving(report.forms.front(), form),
+                        i < uses.size() ? uses[i] : "");
   }
+  for (const SkippedForm& form : report.skipped)
+    text += fmt::format(fmt::runtime(kSkippedRow), form.name, width, printable(reason(form)));
   // No blanks at the ends of lines.
   for (std::size_t at = 0; (at = text.find(" \n", at)) != std::string::npos;) text.erase(at--, 1);
   return text;
+}
+
+std::vector<std::string> uses_of(const SliceReport& report) {
+  std::vector<std::string> uses{infill_of(report.print)};
+  for (std::size_t i = 1; i < report.forms.size(); ++i) uses.push_back(report.use(report.forms[i]));
+  return uses;
+}
+
+// "4.71 cm3 (-30.4 %)"
+std::string filament_of(const SlicedForm& form, const SlicedForm& solid) {
+  const GcodeFigures& figures = form.figures;
+  const std::string amount = figures.filament_cm3 ? fmt::format("{:.2f} cm3", *figures.filament_cm3)
+                             : figures.filament_g ? fmt::format("{:.2f} g", *figures.filament_g)
+                                                  : cell(figures.filament_mm, 0) + " mm";
+  return fmt::format("{} ({:+.1f} %)", amount, -100 * filament_saved(solid.figures, form.figures));
+}
+
+std::string time_change_of(const SlicedForm& form, const SlicedForm& solid) {
+  const auto before = solid.figures.seconds, after = form.figures.seconds;
+  if (!before || !after || *before == *after) return {};
+  return fmt::format(", {} {}", duration(std::abs(*after - *before)), *after < *before ? "less" : "more");
+}
+
+// What to print, in the first line: a pattern of the slicer, where it takes less than all that is made here.
+std::string verdict(const SliceReport& report) {
+  const SlicedForm& solid = report.forms.front();
+  const SlicedForm& lightest = report.lightest();
+  if (lightest.form == PrintForm::solid)
+    return fmt::format("{:<12}solid, as it is: nothing that was sliced takes less filament\n", "least");
+  const std::string figures = filament_of(lightest, solid) + time_change_of(lightest, solid);
+  if (lightest.form != PrintForm::pattern)
+    return fmt::format("{:<12}{}: {}; {}\n", "least", lightest.name(), figures, report.use(lightest));
+  std::string text = fmt::format("{:<12}{} infill, a setting of {}: {}; {}\n", "least", lightest.name(),
+                                 report.slicer.profile->name, figures, report.use(lightest));
+  if (&report.best() == &lightest) return text;
+  return text + fmt::format("{:<12}set it there, or give --as {}; what was written is {}{}\n", "",
+                            lightest.name(), report.best().name(),
+                            report.chosen == 0 ? "" : ", " + filament_of(report.best(), solid));
 }
 
 std::string voids_line(const SlicedForm& form) {
@@ -60,10 +124,10 @@ std::string time_line(const FormsReport& report) {
                      total_of(report.stages).seconds - slicing);
 }
 
-Json json_of(const std::vector<SlicedForm>& forms) {
+Json json_of(const std::vector<SlicedForm>& forms, const std::vector<std::string>& uses = {}) {
   Json list = Json::array();
   for (const SlicedForm& form : forms) {
-    Json entry = {{"form", name_of(form.form)}};
+    Json entry = {{"form", form.name()}};
     for (const NamedFigure& named : kNamedFigures) entry[named.name] = or_null(form.figures.*named.figure);
     entry["layers"] = form.figures.layers;
     entry["filament_saved_percent"] = form.form == PrintForm::solid
@@ -72,8 +136,18 @@ Json json_of(const std::vector<SlicedForm>& forms) {
     entry["slicer_run_seconds"] = form.slicer_seconds;
     entry["voids"] = form.hollow ? Json(form.hollow->output.void_count) : Json(nullptr);
     entry["void_volume_mm3"] = form.hollow ? Json(form.hollow->output.volume_removed) : Json(nullptr);
+    if (!uses.empty()) entry["good_for"] = uses[list.size()];
     list.push_back(entry);
   }
+  return list;
+}
+
+Json json_of(const std::vector<SkippedForm>& forms) {
+  Json list = Json::array();
+  for (const SkippedForm& form : forms)
+    list.push_back({{"form", form.name},
+                    {"predicted_percent", form.predicted ? Json(100 * *form.predicted) : Json(nullptr)},
+                    {"why", reason(form)}});
   return list;
 }
 
@@ -87,19 +161,20 @@ std::string closed(Json& json, const FormsReport& report) {
 
 std::string to_text(const SliceReport& report) {
   const SlicerProfile& slicer = *report.slicer.profile;
-  return fmt::format("{:<12}{}\n{:<12}{} ({}){}\n", "model", printable(report.model.filename().string()),
+  return verdict(report) +
+         fmt::format("{:<12}{}\n{:<12}{} ({}){}\n", "model", printable(report.model.filename().string()),
                      "slicer", slicer.name, printable(report.slicer.program.string()),
                      slicer.untested ? ", untested" : "") +
-         table(report.forms) + voids_line(report.forms.back()) +
+         table(report, uses_of(report)) + voids_line(report.best()) +
          fmt::format("{:<12}{}: {}\n", "output", printable(report.output.filename().string()),
-                     name_of(report.best().form)) +
+                     report.best().name()) +
          time_line(report);
 }
 
 std::string to_text(const HookReport& report) {
   return fmt::format("{:<12}{} ({})\n", "G-code", printable(report.gcode.filename().string()),
                      printable(report.origin.name)) +
-         table(report.forms) + voids_line(report.best()) +
+         table(report) + voids_line(report.best()) +
          fmt::format("{:<12}{}{}\n", "result", report.result(),
                      report.remark.empty() ? "" : ": " + report.remark) +
          time_line(report);
@@ -109,8 +184,10 @@ std::string to_json(const SliceReport& report) {
   Json json = report_header("slice");
   json["model"] = report.model.string();
   json["slicer"] = {{"name", report.slicer.profile->name}, {"program", report.slicer.program.string()}};
-  json["forms"] = json_of(report.forms);
-  json["output"] = {{"path", report.output.string()}, {"form", name_of(report.best().form)}};
+  json["forms"] = json_of(report.forms, uses_of(report));
+  json["not_sliced"] = json_of(report.skipped);
+  json["least"] = report.lightest().name();
+  json["output"] = {{"path", report.output.string()}, {"form", report.best().name()}};
   return closed(json, report);
 }
 
@@ -119,6 +196,7 @@ std::string to_json(const HookReport& report) {
   json["gcode"] = report.gcode.string();
   json["generator"] = report.origin.name;
   json["forms"] = json_of(report.forms);
+  json["not_sliced"] = json_of(report.skipped);
   json["result"] = report.result();
   json["remark"] = report.remark;
   return closed(json, report);

@@ -226,9 +226,12 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
   log.stage("compare");
   require_match(read, solid, slicer, report.origin, options);
   report.forms.front().slicer_seconds = solid.slicer_seconds;
+  report.print = described_print(*slicer.profile, options.gcode);
   std::vector<std::string> losses;
   try {
-    for (SlicedForm& form : slice_hollowed(hollowed, job, log)) {
+    TriedForms tried = slice_hollowed(hollowed, job, report.print, log);
+    report.skipped = std::move(tried.skipped);
+    for (SlicedForm& form : tried.sliced) {
       require_same_place(form, read.moves);
       if (auto loss = loss_in(form, read)) {
         losses.push_back(std::move(*loss));
@@ -243,9 +246,9 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
   }
   report.remark = joined(losses);
   // What another form would lose is no reason to refuse one that loses nothing.
-  if (report.forms.size() == 1) throw FailureError(report.remark, kNoFormHoldsAll);
+  if (report.forms.size() == 1 && !losses.empty()) throw FailureError(report.remark, kNoFormHoldsAll);
   for (const std::string& loss : losses) log.notice(loss);
-  report.chosen = choose_form(report.forms, request.form);
+  if (report.forms.size() > 1) report.chosen = choose_form(report.forms, request.form);
   if (report.chosen > 0) return;
   losses.insert(losses.begin(), "no hollowed form takes less filament");
   report.remark = joined(losses);

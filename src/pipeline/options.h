@@ -87,6 +87,8 @@ enum class HeavierPrint { refuse, allow };
 struct ModifierOptions {
   const SlicerProfile* slicer = nullptr;  // whose: one that has a format for them
   double infill_percent = 0;
+  // In them infill is a slicer's lightning, which holds up what is above, and not the print's own pattern.
+  bool hold_lightning = false;
 };
 
 struct ObjectName {

@@ -1,7 +1,10 @@
 #include "pipeline/print_forms.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
+#include <set>
 #include <string>
 #include <strings.h>
 #include <utility>
@@ -9,18 +12,26 @@
 #include "core/error.h"
 #include "files/formats.h"
 #include "files/load.h"
+#include "pipeline/best_form.h"
+#include "pipeline/held_notices.h"
 #include "pipeline/hollow.h"
+#include "pipeline/lightning_modifiers.h"
+#include "pipeline/print_prediction.h"
 #include "pipeline/solid_file.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
 namespace {
 
-// In the scratch folder.
-std::filesystem::path folder_of(PrintForm form, const FormJob& job) {
-  std::filesystem::path folder = job.scratch / name_of(form);
+// Of a form, in the scratch folder.
+std::filesystem::path folder_of(const std::string& name, const FormJob& job) {
+  std::filesystem::path folder = job.scratch / name;
   std::filesystem::create_directory(folder);
   return folder;
+}
+
+bool is_modifiers(PrintForm form) {
+  return form == PrintForm::modifiers || form == PrintForm::lightning_modifiers;
 }
 
 // What a slicer would call the model as STL.
@@ -32,21 +43,30 @@ std::string object_name(const FormJob& job) {
   return job.object_name.empty() ? usual_name(job) : job.object_name;
 }
 
+// Whether the slicer reads objects' names from a 3MF.
+bool keeps_names(const FormJob& job) {
+  const auto& format = job.slicer.profile->modifiers;
+  return format && format->named != nullptr;
+}
+
 // The model's file in the form's folder. STL, whose object slicers name after the file; 3MF for modifiers and
 // for other names of the object, which it carries.
 std::filesystem::path model_file(PrintForm form, const FormJob& job) {
-  const std::string stl = usual_name(job);
-  const bool as_3mf =
-      form == PrintForm::modifiers || (job.slicer.profile->modifiers && object_name(job) != stl);
+  std::string name = usual_name(job);
+  const std::string stem = job.request.hollow.model.stem().string();
+  if (is_modifiers(form)) {
+    name = stem + job.slicer.profile->modifiers->ending;
+  } else if (keeps_names(job) && object_name(job) != name) {
+    name = stem + ".3mf";
+  }
   // Slicers write a file's name into G-code, where a line feed would begin a command.
-  std::string name = on_one_line(as_3mf ? job.request.hollow.model.stem().string() + ".3mf" : stl);
-  return folder_of(form, job) / name;
+  return folder_of(name_of(form), job) / on_one_line(name);
 }
 
 // The name that goes into a 3MF, as text; none where it is not, or the slicer reads no names.
 std::optional<ObjectName> name_in_3mf(const FormJob& job) {
   const std::string name = object_name(job);
-  if (!job.slicer.profile->modifiers || !is_utf8(name)) return std::nullopt;
+  if (!keeps_names(job) || !is_utf8(name)) return std::nullopt;
   return ObjectName{job.slicer.profile, on_one_line(name)};
 }
 
@@ -64,11 +84,13 @@ void write_solid_model(const FormJob& job, const std::filesystem::path& path, Mo
   }
 }
 
-SlicedForm slice_file(PrintForm form, std::filesystem::path model, const FormJob& job, Monitor& monitor) {
-  monitor.check_interrupted();
-  monitor.stage(fmt::format("slice {}", name_of(form)));
+SlicedForm slice_file(PrintForm form, std::filesystem::path model, const FormJob& job, Monitor& monitor,
+                      const std::string& pattern = {}) {
   SlicedForm sliced;
   sliced.form = form;
+  sliced.pattern = pattern;
+  monitor.check_interrupted();
+  monitor.stage(fmt::format("slice {}", sliced.name()));
   const std::filesystem::path folder = model.parent_path();
   sliced.gcode = folder / "out.gcode";
   const auto begin = std::chrono::steady_clock::now();
@@ -76,12 +98,91 @@ SlicedForm slice_file(PrintForm form, std::filesystem::path model, const FormJob
                          {.model = std::move(model),
                           .gcode = sliced.gcode,
                           .settings = job.settings,
+                          .pattern = pattern,
                           .keep_place = job.keep_place,
                           .scratch = folder},
                          monitor);
   sliced.slicer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return sliced;
 }
+
+HollowOptions printed_as(HollowOptions options, const std::optional<DescribedPrint>& print) {
+  if (!print || !print->is_predictable) return options;
+  options.print = print->settings;
+  options.infill_is_known = true;
+  return options;
+}
+
+// How a form is to be made, in several ways if it is open which is best.
+std::vector<HollowOptions> options_for(PrintForm form, const FormJob& job,
+                                       const std::optional<DescribedPrint>& print) {
+  const FormRequest& request = job.request;
+  std::vector<HollowOptions> ways;
+  if (is_modifiers(form)) {
+    HollowOptions options = printed_as(request.modifiers, print);
+    options.modifiers = {job.slicer.profile, request.modifier_infill_percent};
+    options.packing.process = walled_by_perimeters(std::move(options.packing.process), options.print);
+    options.heavier = HeavierPrint::allow;  // what it takes is judged here
+    if (form == PrintForm::lightning_modifiers)
+      options = holding_lightning(std::move(options), kLightningInfill);
+    ways.push_back(std::move(options));
+    return ways;
+  }
+  for (const HollowOptions& shaped : request.voids) {
+    ways.push_back(printed_as(shaped, print));
+    // Which shape is better can be told of a print that is known alone.
+    if (!ways.back().infill_is_known) break;
+  }
+  return ways;
+}
+
+// Without voids that cost more than they save; with all of them where no others are.
+HollowedForm carve(std::vector<HollowOptions>& ways, Monitor& monitor) {
+  if (!ways.front().infill_is_known || ways.front().heavier == HeavierPrint::allow)
+    return carve_best_form(ways, monitor);
+  HeldNotices held(monitor);
+  try {
+    HollowedForm best = carve_best_form(ways, held);
+    held.pass_on();
+    return best;
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::nothing_to_remove) throw;
+    ways.resize(1);
+    ways.front().heavier = HeavierPrint::allow;
+    HeldNotices unsaid(monitor);  // that the print becomes heavier
+    return carve_best_form(ways, unsaid);
+  }
+}
+
+// How much more filament than solid, as a share.
+double predicted_change(const PrintPrediction& print) {
+  return print.filament_after_mm3 / print.filament_before_mm3 - 1;
+}
+
+// Whether more filament is predicted by more than the prediction may be off (docs/economics.md).
+bool is_hopeless(const PrintPrediction& print) {
+  constexpr double kUncertain = 0.015, kUncertainShare = 0.1;
+  constexpr double kWithOneWall = 0.04, kWithoutWalls = 0.09;
+  const double change = predicted_change(print);
+  double uncertain = std::max(kUncertain, kUncertainShare * std::abs(change));
+  if (print.settings.perimeters < 2)
+    uncertain = std::max(uncertain, print.settings.perimeters == 1 ? kWithOneWall : kWithoutWalls);
+  return change > uncertain;
+}
+
+// Passes each text on once, though the model is looked at for each form.
+class EachNoticeOnce {
+ public:
+  explicit EachNoticeOnce(Monitor& monitor) : monitor_(monitor) {}
+  void pass_on(HeldNotices& held) {
+    for (const std::string& text : held.take())
+      if (said_.insert(text).second) monitor_.notice(text);
+  }
+
+ private:
+  Monitor& monitor_;
+  std::set<std::string> said_;
+};
 
 }  // namespace
 
@@ -93,22 +194,54 @@ const char* name_of(PrintForm form) {
       return "voids";
     case PrintForm::modifiers:
       return "modifiers";
+    case PrintForm::lightning_modifiers:
+      return "lightning-modifiers";
+    case PrintForm::pattern:
+      return "pattern";
   }
   return "unknown";
+}
+
+const char* use_of(PrintForm form) {
+  switch (form) {
+    case PrintForm::voids:
+      return "walls inside, for dense prints";
+    case PrintForm::modifiers:
+      return "infill between empty cells";
+    case PrintForm::lightning_modifiers:
+      return "infill along walls, holds up tops";
+    case PrintForm::solid:
+    case PrintForm::pattern:
+      break;
+  }
+  return "";
 }
 
 bool is_project(const std::filesystem::path& model) {
   return ::strcasecmp(model.extension().c_str(), ".3mf") == 0;
 }
 
-std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const SlicerProfile& slicer) {
-  if (asked == PrintForm::modifiers && !slicer.modifiers) {
+std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const SlicerProfile& slicer,
+                                    bool with_lightning) {
+  const bool has_lightning = slicer.modifiers && slicer.modifiers->has_lightning;
+  if (asked && is_modifiers(*asked) && !slicer.modifiers)
     throw UsageError(fmt::format("{} reads no modifiers", slicer.name),
                      "use --as voids, or --as auto, which leaves them out");
-  }
+  if (asked == PrintForm::lightning_modifiers && !has_lightning)
+    throw UsageError(fmt::format("modifiers for {} hold no lightning infill", slicer.name),
+                     "use --as modifiers, in which there is no infill");
+  if (asked == PrintForm::pattern) return {};
   if (asked) return {*asked};
-  if (slicer.modifiers) return {PrintForm::voids, PrintForm::modifiers};
-  return {PrintForm::voids};
+  std::vector<PrintForm> forms{PrintForm::voids};
+  if (slicer.modifiers) forms.push_back(PrintForm::modifiers);
+  if (with_lightning && has_lightning) forms.push_back(PrintForm::lightning_modifiers);
+  return forms;
+}
+
+std::optional<DescribedPrint> described_print(const SlicerProfile& slicer,
+                                              const std::filesystem::path& gcode) {
+  if (slicer.described_print == nullptr) return std::nullopt;
+  return slicer.described_print(read_text(gcode));
 }
 
 SlicedForm slice_solid(const FormJob& job, Monitor& monitor) {
@@ -117,21 +250,57 @@ SlicedForm slice_solid(const FormJob& job, Monitor& monitor) {
   return slice_file(PrintForm::solid, std::move(model), job, monitor);
 }
 
-std::vector<SlicedForm> slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
-                                       Monitor& monitor) {
-  const HollowedModel hollowed = carve_model(job.request.hollow, monitor);
-  std::vector<SlicedForm> all;
-  for (const PrintForm form : forms) {
-    HollowOptions options = job.request.hollow;
-    options.output = model_file(form, job);
-    options.object_name = name_in_3mf(job);
-    if (form == PrintForm::modifiers)
-      options.modifiers = {job.slicer.profile, job.request.modifier_infill_percent};
-    HollowReport report = write_hollowed(hollowed, options, monitor);
-    all.push_back(slice_file(form, options.output, job, monitor));
-    all.back().hollow = std::move(report);
+TriedForms slice_patterns(const std::vector<SparsePattern>& patterns, const SlicedForm& solid,
+                          const FormJob& job, Monitor& monitor) {
+  TriedForms tried;
+  const std::filesystem::path name = model_file(PrintForm::solid, job).filename();
+  for (const SparsePattern& pattern : patterns) {
+    const std::filesystem::path model = folder_of(pattern.name, job) / name;
+    std::filesystem::copy_file(solid.gcode.parent_path() / name, model);
+    try {
+      tried.sliced.push_back(slice_file(PrintForm::pattern, model, job, monitor, pattern.name));
+    } catch (const FailureError& error) {
+      if (job.request.form) throw;
+      const std::string why = error.what();
+      tried.skipped.push_back({pattern.name, std::nullopt, why.substr(0, why.find('\n'))});
+    }
   }
-  return all;
+  return tried;
+}
+
+TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
+                          const std::optional<DescribedPrint>& print, Monitor& monitor) {
+  TriedForms tried;
+  EachNoticeOnce notices(monitor);
+  std::optional<NothingToRemoveError> refusal;
+  bool all_refused = true;
+  for (const PrintForm form : forms) {
+    std::vector<HollowOptions> ways = options_for(form, job, print);
+    for (HollowOptions& options : ways) {
+      options.output = model_file(form, job);
+      options.object_name = name_in_3mf(job);
+    }
+    HeldNotices held(monitor);
+    try {
+      const HollowedForm best = carve(ways, held);
+      all_refused = false;
+      const bool is_predicted = best.print && best.print->described;
+      if (is_predicted && !job.request.form && is_hopeless(*best.print)) {
+        tried.skipped.push_back({name_of(form), predicted_change(*best.print)});
+        continue;
+      }
+      HollowReport report = write_hollowed(best.hollowed, *best.options, held);
+      notices.pass_on(held);
+      tried.sliced.push_back(slice_file(form, best.options->output, job, monitor));
+      tried.sliced.back().hollow = std::move(report);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::nothing_to_remove) throw;
+      if (!refusal) refusal.emplace(error.what(), error.hint());
+      tried.skipped.push_back({name_of(form), std::nullopt, error.what()});
+    }
+  }
+  if (all_refused && refusal) throw NothingToRemoveError(*refusal);
+  return tried;
 }
 
 double filament_saved(const GcodeFigures& solid, const GcodeFigures& other) {
@@ -148,12 +317,25 @@ std::size_t choose_form(const std::vector<SlicedForm>& forms, std::optional<Prin
   std::size_t best = 0;
   double most_saved = 0;
   for (std::size_t i = 1; i < forms.size(); ++i) {
+    if (forms[i].form == PrintForm::pattern) continue;
     const double saved = filament_saved(forms[0].figures, forms[i].figures);
     if (saved <= most_saved) continue;
     most_saved = saved;
     best = i;
   }
   return best;
+}
+
+std::size_t lightest_form(const std::vector<SlicedForm>& forms) {
+  std::size_t lightest = 0;
+  double most_saved = 0;
+  for (std::size_t i = 1; i < forms.size(); ++i) {
+    const double saved = filament_saved(forms[0].figures, forms[i].figures);
+    if (saved <= most_saved) continue;
+    most_saved = saved;
+    lightest = i;
+  }
+  return lightest;
 }
 
 }  // namespace aerate

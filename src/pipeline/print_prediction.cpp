@@ -170,6 +170,7 @@ PackingRequest without_voids_that_cost(PackingRequest request, const HollowOptio
 
 void require_modifiers_that_save(const HollowOptions& options) {
   if (!options.modifiers || options.heavier == HeavierPrint::allow) return;
+  if (options.modifiers->hold_lightning) return;  // which takes less than its density says
   const bool is_known = options.infill_is_known;
   const double within = options.modifiers->infill_percent;
   const double around = is_known ? in_percent(options.print.infill) : 100;  // else the most that there is
@@ -188,7 +189,7 @@ void require_modifiers_that_save(const HollowOptions& options) {
 std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
                                              const HollowOptions& options, Monitor& monitor) {
   const bool prints_filament = options.packing.process.process.drainage == Drainage::not_needed;
-  if (!prints_filament) return std::nullopt;
+  if (!prints_filament || (options.modifiers && options.modifiers->hold_lightning)) return std::nullopt;
   monitor.stage("predict");
   PrintPrediction prediction;
   prediction.described = options.infill_is_known;

@@ -61,7 +61,8 @@ void require_modifiers_that_save(const HollowOptions& options);
 // "voids of 3.5 mm save above 62 % infill", and what else there is to do.
 std::string where_voids_pay(double radius, const PrintSettings& settings);
 
-// `outer`: the surface of `solid` without the voids. Nothing where the process prints no filament.
+// `outer`: the surface of `solid` without the voids. Nothing where the process prints no filament, and for modifiers that hold
+// lightning.
 std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& solid, const Packing& packing,
                                              const HollowOptions& options, Monitor& monitor);
 

@@ -247,6 +247,17 @@ ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& se
   return choice;
 }
 
+ProcessChoice held_up_by_infill(ProcessChoice choice) {
+  if (find_process(choice.process.name) == nullptr) return choice;
+  const auto is_given = [&](Limit limit) {
+    return choice.limits.contains(limit) && !is_default(choice, limit);
+  };
+  if (is_given(Limit::overhang) || is_given(Limit::bridge)) return choice;
+  choice.limits.erase(Limit::overhang);
+  choice.limits.erase(Limit::bridge);
+  return choice;
+}
+
 ProcessChoice with_tubes(ProcessChoice choice, const Limits& given) {
   const Limits all = all_limits(choice.process, given);
   const auto add = [&](Limit limit, const char* tubes) {

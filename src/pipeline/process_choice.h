@@ -87,6 +87,10 @@ ProcessChoice walled_by_perimeters(ProcessChoice choice, const PrintSettings& se
 // three of these and its gap as two. `origin`: where the width came from.
 ProcessChoice followed_by_lines(ProcessChoice choice, double line_width, const std::string& origin);
 
+// For modifiers with an infill that holds up what is above them: unless the user or a process file gave them, no limits of
+// ceilings.
+ProcessChoice held_up_by_infill(ProcessChoice choice);
+
 // The same job with voids that drain: under the limits of tubes too, those given or the process's. Throws
 // UsageError if one is neither, or if holes are narrower than channels.
 ProcessChoice with_tubes(ProcessChoice choice, const Limits& given);

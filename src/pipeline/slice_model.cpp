@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <fmt/format.h>
+#include <iterator>
 #include <set>
 #include <string>
 #include <string_view>
@@ -95,20 +96,61 @@ void require_known_settings(const SliceModelOptions& options, const Slicer& slic
   }
 }
 
-// Hollowing is quick beside slicing, and says sooner that nothing can be removed; then, if the form is left
-// open, the solid model is all there is.
-std::vector<SlicedForm> slice_what_can_be_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
-                                                   JobLog& log) {
+void add(SliceReport& report, TriedForms tried) {
+  std::ranges::move(tried.sliced, std::back_inserter(report.forms));
+  std::ranges::move(tried.skipped, std::back_inserter(report.skipped));
+}
+
+// If nothing can be removed and the form is left open, the solid model is all there is.
+void slice_what_can_be_hollowed(const std::vector<PrintForm>& forms, const FormJob& job, SliceReport& report,
+                                JobLog& log) {
   try {
-    return slice_hollowed(forms, job, log);
+    add(report, slice_hollowed(forms, job, report.print, log));
   } catch (const NothingToRemoveError& error) {
     if (job.request.form) throw;
     log.notice(std::string(error.what()) + "; the solid model is what was written");
-    return {};
   }
 }
 
+// Throws UsageError for a pattern that the slicer has not.
+std::vector<SparsePattern> patterns_to_try(const SliceModelOptions& options) {
+  std::vector<SparsePattern> patterns = options.slicer->patterns;
+  const FormRequest& request = options.request;
+  if (request.form == PrintForm::pattern) {
+    std::erase_if(patterns, [&](const SparsePattern& each) { return each.name != request.pattern; });
+    if (patterns.empty())
+      throw UsageError(fmt::format("{} cannot be asked for {} infill", options.slicer->name, request.pattern),
+                       "set it in --config, and leave out --as");
+  } else if (request.form || options.comparison == Comparison::forms) {
+    patterns.clear();
+  } else if (options.comparison == Comparison::lightning && !patterns.empty()) {
+    patterns.resize(1);
+  }
+  return patterns;
+}
+
+// Without those that would be the print itself, or that slicers do not make so dense or so sparse.
+void slice_what_can_be_sparse(std::vector<SparsePattern> patterns, const FormJob& job, SliceReport& report,
+                              JobLog& log) {
+  if (report.print && !job.request.form) {
+    const double infill = report.print->settings.infill;
+    std::erase_if(patterns, [&](const SparsePattern& each) { return each.name == report.print->pattern; });
+    if (infill <= 0 || infill >= 1) {
+      for (const SparsePattern& each : patterns)
+        report.skipped.push_back(
+            {each.name, std::nullopt, fmt::format("no pattern of {:g} % infill", 100 * infill)});
+      return;
+    }
+  }
+  add(report, slice_patterns(patterns, report.forms.front(), job, log));
+}
+
 }  // namespace
+
+std::string SliceReport::use(const SlicedForm& form) const {
+  if (form.form != PrintForm::pattern) return use_of(form.form);
+  return std::ranges::find(slicer.profile->patterns, form.pattern, &SparsePattern::name)->good_for;
+}
 
 SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   const FormRequest& request = options.request;
@@ -118,7 +160,9 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   report.output = options.output;
   report.slicer = find_slicer(*options.slicer, request.slicer_path);
   require_settings(options.settings, *options.slicer);
-  const std::vector<PrintForm> hollowed = forms_to_try(request.form, *options.slicer);
+  const std::vector<PrintForm> hollowed =
+      forms_to_try(request.form, *options.slicer, options.comparison == Comparison::patterns);
+  const std::vector<SparsePattern> patterns = patterns_to_try(options);
 
   JobLog log(monitor);
   if (have_post_processing(options.settings))
@@ -128,13 +172,15 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   require_known_settings(options, report.slicer, scratch.path(), log);
   const FormJob job{request, report.slicer, settings_with_project(options, scratch.path(), log),
                     scratch.path()};
-  report.forms = slice_what_can_be_hollowed(hollowed, job, log);
-  report.forms.insert(report.forms.begin(), slice_solid(job, log));
-  if (report.forms.size() > 1) {
-    report.chosen = choose_form(report.forms, request.form);
-    if (report.chosen == 0)
-      log.notice("no hollowed form takes less filament than the solid model, so that is what was written");
-  }
+  report.forms.push_back(slice_solid(job, log));
+  // What the print is decides what is worth slicing.
+  report.print = described_print(*options.slicer, report.forms.front().gcode);
+  slice_what_can_be_sparse(patterns, job, report, log);
+  const std::size_t unhollowed = report.forms.size(), skipped = report.skipped.size();
+  if (!hollowed.empty()) slice_what_can_be_hollowed(hollowed, job, report, log);
+  if (report.forms.size() > 1) report.chosen = choose_form(report.forms, request.form);
+  if (report.chosen == 0 && (report.forms.size() > unhollowed || report.skipped.size() > skipped))
+    log.notice("no hollowed form takes less filament than the solid model, so that is what was written");
 
   pending.commit_text(read_text(report.best().gcode));
   report.stages = log.finish();

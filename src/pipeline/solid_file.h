@@ -13,17 +13,17 @@
 
 namespace aerate {
 
-// How a solid is put into a file: its voids as inward shells or, in a 3MF, as modifiers.
+// How a solid is put into a file: its voids as inward shells or, in a slicer's own kind of file, as modifiers.
 struct SolidFormat {
-  const MeshFormat* mesh = &MeshFormat::stl;
+  const MeshFormat* mesh = &MeshFormat::stl;  // without modifiers
   std::optional<ModifierOptions> modifiers;
   std::optional<ObjectName> object_name;
 };
 
-// Throws UsageError for an ending that cannot be written, and for modifiers in anything but a 3MF.
+// Throws UsageError for an ending that cannot be written, and for modifiers in anything but the file that their slicer reads.
 SolidFormat solid_format_of(const HollowOptions& options);
 
-// A 3MF of one body, called by this name. Throws FailureError with the system's reason.
+// A 3MF of one body, of a slicer that has such, called by this name. Throws FailureError with the system's reason.
 void write_named(const Mesh& mesh, const Destination& destination, const ObjectName& object);
 
 // Throws FailureError with the system's reason.

@@ -8,7 +8,7 @@
 
 namespace aerate::test {
 
-// G-code as PrusaSlicer writes it, of one square; `moves_at` shifts it.
+// G-code as PrusaSlicer writes it, of one square in a print so dense that voids save; `moves_at` shifts it.
 inline std::string fake_gcode(double filament_mm, double moves_at = 0,
                               const std::string& generator = "PrusaSlicer 2.5.0") {
   return fmt::format(
@@ -16,7 +16,7 @@ inline std::string fake_gcode(double filament_mm, double moves_at = 0,
       "E1.5\n"
       "G1 X{} Y20 E1.25\n; filament used [mm] = {}\n; filament used [cm3] = {}\n"
       "; estimated printing time (normal mode) = 5m 17s\n\n; prusaslicer_config = begin\n; fill_density = "
-      "15%\n; layer_height = 0.2\n"
+      "60%\n; layer_height = 0.2\n"
       "; post_process = \"aerate hook\"\n; prusaslicer_config = end\n",
       generator, 10 + moves_at, 20 + moves_at, 20 + moves_at, filament_mm, filament_mm / 400);
 }

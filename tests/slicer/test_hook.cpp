@@ -167,6 +167,23 @@ TEST_F(Hook, LeavesTheMovesWhenNoFormTakesLess) {
   EXPECT_EQ(without_comments(after), before_);
 }
 
+TEST_F(Hook, VoidsThatAreHopelessInTheSparsePrintAreNotSliced) {
+  std::string sparse = fake_gcode(1000);
+  sparse.replace(sparse.find("60%"), 3, "15%");
+  fake_.hands_out("solid", sparse);
+  fake_.hands_out("voids", "not G-code: slicing it would fail");
+  write_gcode(sparse);
+  auto options = with_model();
+  options.insert(options.end(), {"--json", "-"});
+  const ProcessResult result = hook(options);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(result.out);
+  EXPECT_EQ(report["result"], "modifiers");
+  ASSERT_EQ(report["not_sliced"].size(), 1u);
+  EXPECT_EQ(report["not_sliced"][0]["form"], "voids");
+  EXPECT_GT(report["not_sliced"][0]["predicted_percent"], 10);
+}
+
 TEST_F(Hook, ObeysTheFormAskedFor) {
   auto options = with_model();
   options.insert(options.end(), {"--as", "voids", "--json", "-"});

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "files/three_mf.h"
 #include "printing/slicers/slicers.h"
 #include "tests/support/caught.h"
 #include "tests/support/shapes.h"
@@ -36,10 +37,11 @@ class ModifiersIn3mf : public testing::Test {
   }
 
   std::filesystem::path file(const std::string& bytes) const { return folder_.write("model.3mf", bytes); }
-  std::filesystem::path file(const Solid& solid, double infill, const SlicerProfile& slicer) const {
-    const std::vector<ObjectPart> parts = modifier_parts(solid, infill);
-    return file(to_3mf(with_void_shells_turned(solid.mesh, solid),
-                       slicer.modifiers->extras(parts.front(), parts.back(), "")));
+  std::filesystem::path file(const Solid& solid, double infill, const SlicerProfile& slicer,
+                             const std::string& pattern = {}) const {
+    const std::vector<ObjectPart> parts = modifier_parts(solid, infill, pattern);
+    return file(
+        slicer.modifiers->file(with_void_shells_turned(solid.mesh, solid), parts.front(), parts.back(), ""));
   }
 
   TemporaryFolder folder_;
@@ -57,6 +59,17 @@ TEST_F(ModifiersIn3mf, TheModelAndItsModifierAreNamed) {
     EXPECT_TRUE(contains(
         message_of<InputError>([&] { load_model(path, {.unit = {}, .volume_lists = volume_lists()}); }),
         "not part of the model"));
+  }
+}
+
+TEST_F(ModifiersIn3mf, ThePatternInsideIsNamedWhereTheSlicerHasIt) {
+  const Solid solid = box_with_a_void();
+  for (const SlicerProfile& slicer : those_that_take_them()) {
+    if (!slicer.modifiers->has_lightning) continue;
+    SCOPED_TRACE(slicer.name);
+    EXPECT_EQ(slicer.modifiers->read(file(solid, 15, slicer, kLightning)),
+              modifier_parts(solid, 15, kLightning));
+    EXPECT_NE(slicer.modifiers->read(file(solid, 15, slicer)), modifier_parts(solid, 15, kLightning));
   }
 }
 
@@ -82,7 +95,7 @@ TEST_F(ModifiersIn3mf, PartsThatAreNotThoseMeantAreNoticed) {
 TEST_F(ModifiersIn3mf, PackagesOfAnotherKindAreRefused) {
   for (const SlicerProfile& slicer : those_that_take_them()) {
     SCOPED_TRACE(slicer.name);
-    const std::string list = slicer.modifiers->volumes.entry;
+    const std::string list = slicer.modifiers->volumes->entry;
     const auto read = [&](const std::filesystem::path& path) {
       return message_of<FailureError>([&] { slicer.modifiers->read(path); });
     };

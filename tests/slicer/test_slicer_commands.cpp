@@ -74,7 +74,7 @@ TEST_F(Slicing, PicksTheFormThatTakesTheLeastByPrusaSlicersFigures) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(contains(result.err, "post-processing programs of the settings are not run"));
   const Json report = Json::parse(result.out);
-  ASSERT_EQ(report["forms"].size(), 3u);
+  ASSERT_EQ(report["forms"].size(), 4u);
   std::map<std::string, double> filament;
   for (const Json& form : report["forms"]) {
     filament[form["form"]] = form["filament_mm"];
@@ -88,6 +88,113 @@ TEST_F(Slicing, PicksTheFormThatTakesTheLeastByPrusaSlicersFigures) {
   EXPECT_DOUBLE_EQ(filament.at(report["output"]["form"]), least);
   EXPECT_LT(least, filament["solid"]);
   EXPECT_EQ(setting_in(written, "fill_density").value(), "40%");
+  EXPECT_EQ(setting_in(written, "fill_pattern").value(), "gyroid");
+}
+
+// As the slicer's own profiles of 0.2 mm have it, but for the height of layers.
+const char* const kSparseSettings =
+    "fill_density = 15%\nfill_pattern = gyroid\nlayer_height = 0.3\nfirst_layer_height = 0.3\n"
+    "perimeters = 2\ntop_solid_layers = 4\nbottom_solid_layers = 3\n"
+    "ensure_vertical_shell_thickness = 1\nsolid_infill_below_area = 0\nthick_bridges = 0\n";
+
+TEST_F(Slicing, SaysFirstThatAPatternOfTheSlicerTakesLess) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path config = folder_.write("sparse.ini", kSparseSettings);
+  const std::vector<std::string> options{"--config", config, "--shape", "spheres", "--wall", "1.2"};
+  const ProcessResult result = slice(block(), "prusa-slicer", options);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(result.out.starts_with("least       lightning infill, a setting of prusa-slicer: "))
+      << result.out;
+  EXPECT_TRUE(contains(result.out, "holds up tops, no strength"));
+  EXPECT_TRUE(contains(result.out, "what was written is "));
+  EXPECT_TRUE(contains(result.out, "15 % gyroid"));
+  // It is the user's to choose: the print stays what the settings say.
+  EXPECT_EQ(setting_in(read_bytes(output()), "fill_pattern").value(), "gyroid");
+}
+
+TEST_F(Slicing, FormsThatAreHopelessAreNotSliced) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path config = folder_.write("sparse.ini", kSparseSettings);
+  const ProcessResult text = slice(block(), "prusa-slicer", {"--config", config, "--compare", "forms"});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_TRUE(contains(text.out, "%, not sliced\n")) << text.out;
+  const Json report = Json::parse(
+      slice(block(), "prusa-slicer", {"--config", config, "--compare", "forms", "--json", "-"}).out);
+  ASSERT_EQ(report["forms"].size(), 2u);
+  ASSERT_EQ(report["not_sliced"].size(), 1u);
+  EXPECT_EQ(report["not_sliced"][0]["form"], "voids");
+  const double predicted = report["not_sliced"][0]["predicted_percent"];
+  // Who insists gets it, and it is as bad as that.
+  const Json voids =
+      Json::parse(slice(block(), "prusa-slicer", {"--config", config, "--as", "voids", "--json", "-"}).out);
+  ASSERT_EQ(voids["output"]["form"], "voids");
+  EXPECT_NEAR(-voids["forms"][1]["filament_saved_percent"].get<double>(), predicted, 0.1 * predicted);
+}
+
+TEST_F(Slicing, ComparesAllPatternsAndModifiersThatHoldLightning) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path config = folder_.write("sparse.ini", kSparseSettings);
+  const ProcessResult result =
+      slice(block(), "prusa-slicer", {"--config", config, "--compare", "patterns", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  std::map<std::string, double> filament;
+  for (const Json& form : report["forms"]) {
+    filament[form["form"]] = form["filament_mm"];
+    EXPECT_FALSE(form["good_for"].get<std::string>().empty()) << form["form"];
+  }
+  for (const char* form :
+       {"lightning", "adaptivecubic", "supportcubic", "modifiers", "lightning-modifiers"}) {
+    ASSERT_TRUE(filament.contains(form)) << form;
+    EXPECT_LT(filament[form], filament["solid"]) << form;
+  }
+  const auto least = std::ranges::min_element(filament, {}, [](const auto& form) { return form.second; });
+  EXPECT_EQ(report["least"], least->first);
+  const std::string chosen = report["output"]["form"];
+  EXPECT_DOUBLE_EQ(filament[chosen], std::min(filament["modifiers"], filament["lightning-modifiers"]));
+}
+
+TEST_F(Slicing, WritesThePatternThatWasAskedFor) {
+  AERATE_NEEDS("prusa-slicer");
+  const fs::path config = folder_.write("sparse.ini", kSparseSettings);
+  const ProcessResult result =
+      slice(block(), "prusa-slicer", {"--config", config, "--as", "supportcubic", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(Json::parse(result.out)["output"]["form"], "supportcubic");
+  EXPECT_EQ(setting_in(read_bytes(output()), "fill_pattern").value(), "supportcubic");
+  EXPECT_EQ(slice(block(), "slic3r", {"--as", "lightning"}).exit_code, 2);
+}
+
+TEST_F(Slicing, PatternsThatTheSlicerFailsWithAreSkipped) {
+  const FakeSlicer fake(folder_);
+  for (const char* form : {"solid", "voids", "modifiers"}) fake.hands_out(form, fake_gcode(1000));
+  const ProcessResult result =
+      slice(block(), "prusa-slicer", {"--slicer-path", fake.program(), "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  EXPECT_EQ(report["not_sliced"][0]["form"], "lightning");
+  EXPECT_TRUE(contains(report["not_sliced"][0]["why"].get<std::string>(), "failed with status 1"));
+  EXPECT_EQ(slice(block(), "prusa-slicer", {"--slicer-path", fake.program(), "--as", "lightning"}).exit_code,
+            1);
+}
+
+TEST_F(Slicing, APatternThatIsThePrintsOwnOrOfASolidPrintIsNotSliced) {
+  const FakeSlicer fake(folder_);
+  const auto with = [](std::string gcode, const std::string& line) {
+    const std::string infill = "; fill_density = 60%\n";
+    return gcode.replace(gcode.find(infill), infill.size(), line);
+  };
+  for (const char* form : {"voids", "modifiers"}) fake.hands_out(form, fake_gcode(900));
+  const auto patterns = [&](const std::string& lines) {
+    fake.hands_out("solid", with(fake_gcode(1000), lines));
+    const ProcessResult result =
+        slice(block(), "prusa-slicer", {"--slicer-path", fake.program(), "--json", "-"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    Json report = Json::parse(result.out);
+    return report["not_sliced"];
+  };
+  EXPECT_EQ(patterns("; fill_density = 15%\n; fill_pattern = lightning\n"), Json::array());
+  EXPECT_EQ(patterns("; fill_density = 100%\n")[0]["why"], "not sliced: no pattern of 100 % infill");
 }
 
 TEST_F(Slicing, WritesTheSolidPrintWhenNothingTakesLess) {
@@ -173,6 +280,7 @@ TEST_F(Slicing, RefusesToGiveGcodeTheNameOfAModel) {
 
 TEST_F(Slicing, SaysThatBinaryGcodeCannotBeRead) {
   const FakeSlicer fake(folder_);
+  fake.hands_out("solid", fake_gcode(1000));
   fake.hands_out("voids", "GCDE and so on");
   const ProcessResult result = slice(block(), "prusa-slicer", {"--slicer-path", fake.program()});
   EXPECT_EQ(result.exit_code, 1);

@@ -143,6 +143,34 @@ TEST_F(Modifiers, InfillInsideIsTheOneAskedFor) {
   EXPECT_NEAR(same, filament(block, "50%"), 0.001 * same);
 }
 
+TEST_F(Modifiers, LightningInThemHoldsUpTopsForLittle) {
+  const auto block = model("block.stl", make_box({0, 0, 0}, {24, 24, 24}));
+  const auto lightning = folder_.path() / "lightning.3mf";
+  ASSERT_EQ(run({AERATE_EXECUTABLE, "hollow", block, "-o", lightning, "--as", "modifiers",
+                 "--modifier-pattern", "lightning"})
+                .exit_code,
+            0);
+  const auto empty = folder_.path() / "empty.3mf";
+  ASSERT_EQ(run({AERATE_EXECUTABLE, "hollow", block, "-o", empty, "--as", "modifiers", "--max-voids", "1",
+                 "--bridge", "1000"})
+                .exit_code,
+            0);
+  const auto of_height = [&](const std::filesystem::path& path, double height) {
+    const auto gcode = folder_.path() / "out.gcode";
+    slice_with_prusa(path, gcode,
+                     {"--fill-density", "15%", "--fill-pattern", "gyroid", "--layer-height", "0.3",
+                      "--first-layer-height", "0.3", "--skirts", "0"});
+    double sum = 0;
+    for (const ExtrusionMove& move : extrusion_moves(read_bytes(gcode)))
+      if (std::abs(move.z - height) < 0.01) sum += move.filament;
+    return sum;
+  };
+  // The same shape, empty in one of them: below the top there are lines to hold it, and down in the block few.
+  EXPECT_GT(of_height(lightning, 21), 1.1 * of_height(empty, 21));
+  EXPECT_LT(filament(lightning, "15%"), 0.8 * filament(block, "15%"));
+  EXPECT_GT(filament(lightning, "15%"), filament(empty, "15%"));
+}
+
 TEST_F(Modifiers, VoidsInA3mfAreThoseOfAnStl) {
   const auto block = model("block.stl", make_box({0, 0, 0}, {24, 24, 24}));
   const double solid = filament(block, "100%", "rectilinear");
