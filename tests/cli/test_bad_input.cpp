@@ -365,7 +365,7 @@ TEST(BadInput, NumbersThatMakeNoSense) {
   refused({"--tolerance", "0.5"}, "--min-radius 0.62 mm");
   refused({"--scale", "0"}, "more than 0");
   refused({"--scale", "1,1,0"}, "more than 0");
-  refused({"--scale=-1,1,1"}, "-1 is too little");
+  refused({"--scale", "1,-1,1"}, "-1 is too little");
   refused({"--scale", "1,1"}, "'1,1' is neither a number nor three");
   refused({"--scale", "1,1,1e10"}, "too much");
   refused({"--unit", "furlong"}, "furlong");
