@@ -169,8 +169,6 @@ SlicerProfile orca_slicer() {
                    .named = named,
                    .read = read_parts,
                    .has_lightning = true};
-  row.patterns.clear();  // its command line has no options for them
-  row.described_print = nullptr;
   return row;
 }
 

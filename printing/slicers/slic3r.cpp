@@ -1,10 +1,17 @@
 #include <algorithm>
 #include <array>
+#include <fmt/compile.h>
 #include <fmt/format.h>
+#include <iterator>
 #include <map>
+#include <pugixml.hpp>
 #include <utility>
 
+#include "core/error.h"
+#include "files/decimal.h"
 #include "files/output_file.h"
+#include "files/text_scan.h"
+#include "files/three_mf.h"
 #include "printing/slicers/gcode_machine.h"
 #include "printing/slicers/ini_settings.h"
 #include "printing/slicers/slicers.h"
@@ -131,6 +138,96 @@ ChildCommand list_settings(const fs::path& program, const fs::path& file) {
   return {{program, "--save", file}, {}, file.parent_path()};
 }
 
+// Slic3r keeps modifiers in AMF alone: volumes of one object, with their settings as metadata.
+constexpr const char* kModifier = "slic3r.modifier";
+constexpr const char* kInfill = "slic3r.fill_density";
+
+std::string metadata(const char* type, std::string_view value) {
+  return fmt::format("<metadata type=\"{}\">{}</metadata>\n", type, value);
+}
+
+void append_volume(std::string& out, const Mesh& mesh, const ObjectPart& part) {
+  out += "<volume>\n" + metadata("name", part.name);
+  if (part.is_modifier) out += metadata(kModifier, "1") + metadata(kInfill, part.infill);
+  for (std::size_t i = part.first_triangle; i < part.end(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    fmt::format_to(std::back_inserter(out),
+                   FMT_COMPILE("<triangle><v1>{}</v1><v2>{}</v2><v3>{}</v3></triangle>\n"), t[0], t[1], t[2]);
+  }
+  out += "</volume>\n";
+}
+
+std::string file_for(const Mesh& mesh, const ObjectPart& model, const ObjectPart& voids,
+                     const std::string& object_name) {
+  constexpr std::size_t kVertexBytes = 80, kTriangleBytes = 64;
+  std::string out;
+  out.reserve(mesh.positions.size() * kVertexBytes + mesh.triangles.size() * kTriangleBytes);
+  out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<amf unit=\"millimeter\">\n<object id=\"0\">\n" +
+        metadata("name", xml_value(object_name.empty() ? model.name : object_name)) + "<mesh>\n<vertices>\n";
+  for (const Vec3f& p : mesh.positions)
+    fmt::format_to(std::back_inserter(out),
+                   FMT_COMPILE("<vertex><coordinates><x>{}</x><y>{}</y><z>{}</z></coordinates></vertex>\n"),
+                   Decimal{p.x}, Decimal{p.y}, Decimal{p.z});
+  out += "</vertices>\n";
+  append_volume(out, mesh, model);
+  append_volume(out, mesh, voids);
+  return out + "</mesh>\n</object>\n</amf>\n";
+}
+
+[[noreturn]] void fail_as_written(const fs::path& file, const std::string& why) {
+  throw FailureError(file.string() + ": is not the AMF file that was written: " + why);
+}
+
+// <mesh> of such a file, whose document has to stay.
+pugi::xml_node read_amf(const fs::path& file, pugi::xml_document& document) {
+  const pugi::xml_parse_result result = document.load_file(file.c_str());
+  if (!result) fail_as_written(file, result.description());
+  return document.child("amf").child("object").child("mesh");
+}
+
+std::string metadata_of_type(const pugi::xml_node& volume, const char* type) {
+  return volume.find_child_by_attribute("metadata", "type", type).text().as_string();
+}
+
+std::vector<ObjectPart> read_parts(const fs::path& file) {
+  pugi::xml_document document;
+  std::vector<ObjectPart> parts;
+  std::size_t next = 0;
+  for (const pugi::xml_node volume : read_amf(file, document).children("volume")) {
+    const auto triangles = volume.children("triangle");
+    const auto count = static_cast<std::size_t>(std::distance(triangles.begin(), triangles.end()));
+    parts.push_back({metadata_of_type(volume, "name"), next, count,
+                     metadata_of_type(volume, kModifier) == "1", metadata_of_type(volume, kInfill)});
+    next += count;
+  }
+  return parts;
+}
+
+Mesh read_mesh(const fs::path& file) {
+  pugi::xml_document document;
+  const pugi::xml_node mesh_node = read_amf(file, document);
+  const auto number = [&](const pugi::xml_node& parent, const char* name) {
+    std::string_view text = parent.child(name).text().as_string();
+    const auto value = parse_number<float>(text);
+    if (!value) fail_as_written(file, fmt::format("<{}>{}</{}>", name, text, name));
+    return *value;
+  };
+  Mesh mesh;
+  for (const pugi::xml_node vertex : mesh_node.child("vertices").children("vertex")) {
+    const pugi::xml_node at = vertex.child("coordinates");
+    mesh.positions.push_back({number(at, "x"), number(at, "y"), number(at, "z")});
+  }
+  for (const pugi::xml_node volume : mesh_node.children("volume")) {
+    for (const pugi::xml_node node : volume.children("triangle")) {
+      const Triangle triangle{node.child("v1").text().as_uint(), node.child("v2").text().as_uint(),
+                              node.child("v3").text().as_uint()};
+      if (std::ranges::max(triangle) >= mesh.positions.size()) fail_as_written(file, "a vertex is missing");
+      mesh.triangles.push_back(triangle);
+    }
+  }
+  return mesh;
+}
+
 }  // namespace
 
 SlicerProfile slic3r() {
@@ -153,6 +250,8 @@ SlicerProfile slic3r() {
                  {"filament used", &GcodeFigures::filament_g, grams_of, true},
                  {"filament used", &GcodeFigures::filament_cm3, number_in_brackets, true}};
   row.begins_layer = begins_layer;
+  row.modifiers = {
+      .flavor = "slic3r", .ending = ".amf", .file = file_for, .read = read_parts, .read_mesh = read_mesh};
   return row;
 }
 

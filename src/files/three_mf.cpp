@@ -98,8 +98,10 @@ void begin_object(std::string& out, std::size_t id, std::string_view name = {}) 
   out += ">\n";
 }
 
-void append_mesh_object(std::string& out, std::size_t id, const Mesh& mesh, std::string_view name = {}) {
+void append_mesh_object(std::string& out, std::size_t id, const Mesh& mesh, std::string_view name = {},
+                        std::string_view notes = {}) {
   begin_object(out, id, name);
+  out += notes;
   append_mesh(out, mesh.positions, mesh.triangles);
   out += "</object>\n";
 }
@@ -108,7 +110,10 @@ void append_mesh_object(std::string& out, std::size_t id, const Mesh& mesh, std:
 std::size_t append_components(std::string& out, const Mesh& mesh, const ThreeMfExtras& extras) {
   std::size_t first = 0, id = 0;
   for (const std::size_t count : extras.component_triangles) {
-    append_mesh_object(out, ++id, submesh(mesh, std::span(mesh.triangles).subspan(first, count)));
+    const std::string_view notes = id < extras.component_notes.size()
+                                       ? std::string_view(extras.component_notes[id])
+                                       : std::string_view();
+    append_mesh_object(out, ++id, submesh(mesh, std::span(mesh.triangles).subspan(first, count)), {}, notes);
     first += count;
   }
   const std::size_t object = id + 1;
@@ -122,7 +127,9 @@ std::size_t append_components(std::string& out, const Mesh& mesh, const ThreeMfE
 std::string model_document(const Mesh& mesh, const ThreeMfExtras& extras) {
   std::string out =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" "
-      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"" +
+      (extras.namespaces.empty() ? "" : " " + extras.namespaces) +
+      ">\n"
       "<metadata name=\"Application\">" +
       extras.application + "</metadata>\n<resources>\n";
   std::size_t object = 1;

@@ -24,6 +24,9 @@ struct ThreeMfExtras {
   // If given, the object is put together of components: the mesh is cut into so many triangles each, in
   // order, which become objects 1, 2, ...; the object that is printed comes after them. Else it is object 1.
   std::vector<std::size_t> component_triangles = {};
+  // If given, what an object of a component holds before its mesh, as XML, for each of them.
+  std::vector<std::string> component_notes = {};
+  std::string namespaces = {};             // attributes of the model, for prefixes that these use
   std::string application = "aerate";      // said to have made the package
   std::string object_name = {};            // of the object that is printed, in UTF-8; none if empty
   std::vector<ThreeMfEntry> entries = {};  // further files of the package
@@ -39,6 +42,10 @@ std::string to_3mf(const Mesh& mesh, const ThreeMfExtras& extras = {});
 
 // The content of one entry, read back from a package. Throws FailureError if it is not there.
 std::string read_3mf_entry(const std::filesystem::path& path, const std::string& name);
+
+// The meshes of a package that `to_3mf` made, one for each object that has one, in order. Throws FailureError if there is
+// none, InputError for what no package has.
+std::vector<Mesh> read_3mf_meshes(const std::filesystem::path& path);
 
 // For a package that is not as `to_3mf` made it.
 FailureError not_as_written(const std::filesystem::path& path, const std::string& why);

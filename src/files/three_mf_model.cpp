@@ -40,6 +40,13 @@ constexpr std::array kUnits{UnitOfFile{"micron", 0.001},  UnitOfFile{"millimeter
                             UnitOfFile{"centimeter", 10}, UnitOfFile{"inch", 25.4},
                             UnitOfFile{"foot", 304.8},    UnitOfFile{"meter", 1000}};
 
+// By the name of the setting of Cura that makes an object one of these.
+constexpr std::array<std::pair<std::string_view, const char*>, 4> kMeshesOfCura{
+    {{":infill_mesh", "an infill mesh"},
+     {":cutting_mesh", "a cutting mesh"},
+     {":support_mesh", "a support mesh"},
+     {":anti_overhang_mesh", "a support blocker"}}};
+
 // What a file can make of a few bytes each.
 constexpr std::size_t kMostReferences = 1000000;
 
@@ -126,7 +133,7 @@ std::optional<float> parse_float(std::string_view word) {
 
 class ModelPartReader final : public XmlStream {
  public:
-  explicit ModelPartReader(const std::string& where) : where_(where) {}
+  ModelPartReader(const std::string& where, MeshesOfCura meshes) : where_(where), meshes_(meshes) {}
 
   ModelPart take() && { return std::move(part_); }
 
@@ -266,10 +273,22 @@ class ModelPartReader final : public XmlStream {
     if (places_.back() == Place::document) fail("a <{}> is not a 3MF model", shown(element.name));
     if (places_.back() == Place::mesh && element.name == "beamlattice")
       fail_unread("object {} has a beam lattice, which is not read", object().id);
+    if (object_ != nullptr && element.name == "metadata") require_part_of_model(element);
     if (places_.back() != Place::object || element.name == "metadatagroup") return;
     foreign_shape_ = element.prefix.empty()
                          ? shown(element.name)
                          : fmt::format("{}:{}", shown(element.prefix), shown(element.name));
+  }
+
+  // Cura has such settings only of objects that are what they say.
+  void require_part_of_model(const XmlElement& element) const {
+    const std::string_view name = find(element, "name").value_or("");
+    for (const auto& [setting, what] : kMeshesOfCura) {
+      if (meshes_ == MeshesOfCura::take || !name.ends_with(setting)) continue;
+      throw InputError(fmt::format("{}: object {} is {} of Cura, which is not part of the model", here(),
+                                   object_->id, what),
+                       "take it out in Cura, or export the model alone");
+    }
   }
 
   void add_vertex(const XmlElement& element) {
@@ -334,6 +353,7 @@ class ModelPartReader final : public XmlStream {
   }
 
   const std::string& where_;
+  MeshesOfCura meshes_;
   ModelPart part_;
   std::vector<Place> places_{Place::document};
   ModelObject* object_ = nullptr;  // the one being read
@@ -347,8 +367,9 @@ class ModelPartReader final : public XmlStream {
 
 ModelPart read_model_part(
     const std::string& where,
-    const std::function<void(const std::function<void(std::string_view)>& block)>& for_each_block) {
-  ModelPartReader reader(where);
+    const std::function<void(const std::function<void(std::string_view)>& block)>& for_each_block,
+    MeshesOfCura meshes) {
+  ModelPartReader reader(where, meshes);
   for_each_block([&](std::string_view bytes) { reader.read(bytes); });
   reader.finish();
   return std::move(reader).take();

@@ -37,12 +37,16 @@ struct ModelPart {
   std::size_t items_not_printed = 0;
 };
 
+// What to do with meshes of which Cura keeps in the model itself that they are no part of it.
+enum class MeshesOfCura { refuse, take };
+
 // Reads a model part whose bytes come in blocks: for_each_block calls what it is given with each. `where` is
 // the file's name and the part's, for messages. Numbers are read whole, as the nearest fp32. Throws InputError
 // with the line for XML that is not well-formed, numbers that are none, indices out of range, objects without
-// shape or of no known type, beam lattices, and extensions that the part requires and that are not honoured.
+// shape or of no known type, beam lattices, infill meshes and the like of Cura unless these are taken, and extensions that the part requires and that are not honoured.
 ModelPart read_model_part(
     const std::string& where,
-    const std::function<void(const std::function<void(std::string_view)>& block)>& for_each_block);
+    const std::function<void(const std::function<void(std::string_view)>& block)>& for_each_block,
+    MeshesOfCura meshes = MeshesOfCura::refuse);
 
 }  // namespace aerate

@@ -261,6 +261,17 @@ Mesh read_written_3mf(OwnFile& file) {
 
 }  // namespace
 
+std::vector<Mesh> read_3mf_meshes(const std::filesystem::path& path) {
+  const std::string text = read_3mf_entry(path, kThreeMfModel);
+  ModelPart part = read_model_part(
+      path.string(), [&](const auto& block) { block(text); }, MeshesOfCura::take);
+  std::vector<Mesh> meshes;
+  for (auto& [id, object] : part.objects)
+    if (object.components.empty()) meshes.push_back(std::move(object.mesh));
+  if (meshes.empty()) throw not_as_written(path, "there is no mesh");
+  return meshes;
+}
+
 constinit const MeshFormat MeshFormat::three_mf{"3MF", ".3mf", read_3mf, write_3mf, read_written_3mf};
 
 }  // namespace aerate

@@ -7,6 +7,7 @@
 #include "files/three_mf.h"
 #include "printing/slicers/slicers.h"
 #include "tests/support/caught.h"
+#include "tests/support/files.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/zip.h"
@@ -36,12 +37,15 @@ class ModifiersIn3mf : public testing::Test {
     return all;
   }
 
-  std::filesystem::path file(const std::string& bytes) const { return folder_.write("model.3mf", bytes); }
+  std::filesystem::path file(const std::string& bytes, const std::string& ending = ".3mf") const {
+    return folder_.write("model" + ending, bytes);
+  }
   std::filesystem::path file(const Solid& solid, double infill, const SlicerProfile& slicer,
                              const std::string& pattern = {}) const {
     const std::vector<ObjectPart> parts = modifier_parts(solid, infill, pattern);
     return file(
-        slicer.modifiers->file(with_void_shells_turned(solid.mesh, solid), parts.front(), parts.back(), ""));
+        slicer.modifiers->file(with_void_shells_turned(solid.mesh, solid), parts.front(), parts.back(), ""),
+        slicer.modifiers->ending);
   }
 
   TemporaryFolder folder_;
@@ -49,12 +53,19 @@ class ModifiersIn3mf : public testing::Test {
 
 TEST_F(ModifiersIn3mf, TheModelAndItsModifierAreNamed) {
   const Solid solid = box_with_a_void();
-  EXPECT_EQ(those_that_take_them().size(), 2u);
+  EXPECT_EQ(those_that_take_them().size(), 4u);
   for (const SlicerProfile& slicer : those_that_take_them()) {
     SCOPED_TRACE(slicer.name);
     const auto path = file(solid, 12.5, slicer);
     EXPECT_EQ(slicer.modifiers->read(path), modifier_parts(solid, 12.5));
-    EXPECT_EQ(signed_volume(load_model(path).mesh), 8000 + 64);
+    if (slicer.modifiers->read_mesh != nullptr) {
+      const Mesh bodies = slicer.modifiers->read_mesh(path);
+      EXPECT_EQ(bodies.triangles.size(), solid.mesh.triangles.size());
+      EXPECT_EQ(signed_volume(bodies), 8000 + 64);
+    } else {
+      EXPECT_EQ(signed_volume(load_model(path).mesh), 8000 + 64);
+    }
+    if (slicer.modifiers->ending != ".3mf") continue;
     // As a model it would print the voids.
     EXPECT_TRUE(contains(
         message_of<InputError>([&] { load_model(path, {.unit = {}, .volume_lists = volume_lists()}); }),
@@ -70,6 +81,19 @@ TEST_F(ModifiersIn3mf, ThePatternInsideIsNamedWhereTheSlicerHasIt) {
     EXPECT_EQ(slicer.modifiers->read(file(solid, 15, slicer, kLightning)),
               modifier_parts(solid, 15, kLightning));
     EXPECT_NE(slicer.modifiers->read(file(solid, 15, slicer)), modifier_parts(solid, 15, kLightning));
+  }
+}
+
+TEST_F(ModifiersIn3mf, FilesThatAreCutOffAreNoticed) {
+  const Solid solid = box_with_a_void();
+  for (const SlicerProfile& slicer : those_that_take_them()) {
+    if (slicer.modifiers->read_mesh == nullptr) continue;
+    SCOPED_TRACE(slicer.name);
+    const std::string bytes = read_bytes(file(solid, 0, slicer));
+    const auto cut = file(bytes.substr(0, bytes.size() / 2), slicer.modifiers->ending);
+    EXPECT_TRUE(
+        contains(message_of<FailureError>([&] { slicer.modifiers->read_mesh(cut); }), "that was written"));
+    EXPECT_TRUE(contains(message_of<FailureError>([&] { slicer.modifiers->read(cut); }), "that was written"));
   }
 }
 
@@ -95,6 +119,7 @@ TEST_F(ModifiersIn3mf, PartsThatAreNotThoseMeantAreNoticed) {
 TEST_F(ModifiersIn3mf, PackagesOfAnotherKindAreRefused) {
   for (const SlicerProfile& slicer : those_that_take_them()) {
     SCOPED_TRACE(slicer.name);
+    if (!slicer.modifiers->volumes) continue;
     const std::string list = slicer.modifiers->volumes->entry;
     const auto read = [&](const std::filesystem::path& path) {
       return message_of<FailureError>([&] { slicer.modifiers->read(path); });

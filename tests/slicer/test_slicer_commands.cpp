@@ -199,13 +199,15 @@ TEST_F(Slicing, APatternThatIsThePrintsOwnOrOfASolidPrintIsNotSliced) {
 
 TEST_F(Slicing, WritesTheSolidPrintWhenNothingTakesLess) {
   AERATE_NEEDS("slic3r");
-  // Small voids at sparse infill: their walls cost more than they save, and Slic3r has no modifiers.
+  // Small voids at sparse infill: their walls cost more than they save.
   const fs::path config =
       folder_.write("sparse.ini", "fill_density = 5%\nlayer_height = 0.3\npost_process = /bin/false\n");
-  const ProcessResult result = slice(block(), "slic3r", {"--config", config, "--json", "-"});
+  const fs::path narrow = model("narrow.stl", make_box({0, 0, 0}, {12, 12, 12}));
+  const ProcessResult result =
+      slice(narrow, "slic3r", {"--config", config, "--modifier-infill", "5", "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json report = Json::parse(result.out);
-  ASSERT_EQ(report["forms"].size(), 2u);
+  ASSERT_EQ(report["forms"].size(), 3u);
   EXPECT_EQ(report["output"]["form"], "solid");
   EXPECT_GT(report["forms"][1]["filament_mm"], report["forms"][0]["filament_mm"]);
   EXPECT_EQ(figures_of(read_bytes(output()), slic3r()).filament_mm.value(),
@@ -218,8 +220,26 @@ TEST_F(Slicing, Slic3rPrintsVoids) {
       folder_.write("dense.ini", "fill_density = 100%\nfill_pattern = rectilinear\nlayer_height = 0.3\n");
   const ProcessResult result = slice(block(), "slic3r", {"--config", config, "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(Json::parse(result.out)["output"]["form"], "voids");
-  EXPECT_TRUE(contains(slice(block(), "slic3r", {"--as", "modifiers"}).err, "reads no modifiers"));
+  const Json report = Json::parse(result.out);
+  ASSERT_EQ(report["forms"][1]["form"], "voids");
+  EXPECT_GT(report["forms"][1]["filament_saved_percent"], 5);
+}
+
+TEST_F(Slicing, Slic3rPrintsModifiers) {
+  AERATE_NEEDS("slic3r");
+  const fs::path config = folder_.write("sparse.ini", kSparseSettings);
+  const ProcessResult result =
+      slice(block(), "slic3r", {"--config", config, "--as", "modifiers", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  EXPECT_EQ(report["output"]["form"], "modifiers");
+  const double saved = report["forms"][1]["filament_saved_percent"];
+  std::printf("Slic3r: modifiers save %.1f %%\n", saved);
+  EXPECT_GT(saved, 10);
+  // It has no such infill.
+  const ProcessResult lightning = slice(block(), "slic3r", {"--as", "lightning-modifiers"});
+  EXPECT_EQ(lightning.exit_code, 2);
+  EXPECT_TRUE(contains(lightning.err, "no lightning"));
 }
 
 TEST_F(Slicing, ShowsAllThatAFailingSlicerPrinted) {
@@ -715,12 +735,72 @@ TEST_F(Slicing, CuraEngineByTheCommand) {
       slice(block(), "cura-engine", {"--config", cura_definition(), "--config", settings, "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json report = Json::parse(result.out);
-  EXPECT_EQ(report["output"]["form"], "voids");
+  ASSERT_EQ(report["forms"].size(), 4u);
+  EXPECT_GT(report["forms"][2]["filament_saved_percent"], 5);
+  EXPECT_EQ(report["forms"][2]["form"], "voids");
   const std::string gcode = read_bytes(output());
   EXPECT_TRUE(gcode.starts_with(";FLAVOR:Marlin\n"));
   EXPECT_FALSE(contains(gcode, ";TIME:6666"));  // the header with the true figures is in
-  EXPECT_DOUBLE_EQ(figures_of(gcode, cura_engine()).seconds.value(),
-                   report["forms"][1]["seconds"].get<double>());
+  const auto written = std::ranges::find_if(
+      report["forms"], [&](const Json& form) { return form["form"] == report["output"]["form"]; });
+  EXPECT_DOUBLE_EQ(figures_of(gcode, cura_engine()).seconds.value(), (*written)["seconds"].get<double>());
+}
+
+TEST_F(Slicing, CuraEnginePrintsModifiers) {
+  AERATE_NEEDS("CuraEngine");
+  if (cura_definition().empty())
+    GTEST_SKIP() << "no definitions for CuraEngine: scripts/install-dependencies --checks fetches them";
+  const fs::path settings =
+      folder_.write("settings.txt", "layer_height=0.3\ninfill_pattern=gyroid\ninfill_line_distance=2.7\n");
+  std::map<std::string, double> saved;
+  for (const char* form : {"modifiers", "lightning-modifiers"}) {
+    const ProcessResult result =
+        slice(block(), "cura-engine",
+              {"--config", cura_definition(), "--config", settings, "--as", form, "--json", "-"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json report = Json::parse(result.out);
+    EXPECT_EQ(report["output"]["form"], form);
+    saved[form] = report["forms"][1]["filament_saved_percent"];
+    EXPECT_EQ(report["forms"][1]["layers"], report["forms"][0]["layers"]);
+    std::printf("CuraEngine: %s save %.1f %%\n", form, saved[form]);
+    EXPECT_GT(saved[form], 10);
+  }
+}
+
+// Two files are not centred one by one: the cell of a tower at one end of a long part is in the tower.
+TEST_F(Slicing, CuraEngineKeepsModifiersWhereTheyAre) {
+  AERATE_NEEDS("CuraEngine");
+  if (cura_definition().empty())
+    GTEST_SKIP() << "no definitions for CuraEngine: scripts/install-dependencies --checks fetches them";
+  const fs::path settings =
+      folder_.write("settings.txt", "layer_height=0.3\ninfill_pattern=lines\ninfill_line_distance=0.8\n");
+  const fs::path part =
+      model("part.stl", join(make_box({0, 0, 0}, {16, 16, 16}), make_box({40, 0, 0}, {42, 16, 4})));
+  const ProcessResult result = slice(part, "cura-engine",
+                                     {"--config", cura_definition(), "--config", settings, "--as",
+                                      "modifiers", "--max-voids", "1", "--bridge", "1000"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::vector<ExtrusionMove> moves = extrusion_moves(read_bytes(output()));
+  const auto in_layers = [&](double from, double to, const auto& look) {
+    for (const ExtrusionMove& move : moves)
+      if (move.z >= from && move.z <= to) look(move);
+  };
+  double left = 1e9, front = 1e9;
+  in_layers(1, 3, [&](const ExtrusionMove& move) {
+    left = std::min({left, move.x, move.from_x});
+    front = std::min({front, move.y, move.from_y});
+  });
+  // Nothing is printed near the tower's axis.
+  const double x = left + 8, y = front + 8;
+  double nearest = 1e9;
+  in_layers(7, 9, [&](const ExtrusionMove& move) {
+    for (int i = 0; i <= 20; ++i) {
+      const double t = i / 20.0;
+      nearest = std::min(nearest, std::hypot(move.from_x + t * (move.x - move.from_x) - x,
+                                             move.from_y + t * (move.y - move.from_y) - y));
+    }
+  });
+  EXPECT_GT(nearest, 5);
 }
 
 }  // namespace
