@@ -47,7 +47,7 @@ struct SliceCommand {
     command
         .add_option("--compare", comparison,
                     "What is sliced beside solid, voids and modifiers: forms (nothing), lightning (the solid "
-                    "model in the slicer's lightning infill, one more run), or patterns (in all its sparse "
+                    "model in PrusaSlicer's lightning infill, one more run), or patterns (in all its sparse "
                     "patterns, and modifiers that hold lightning, four more runs)")
         ->check(CLI::IsMember(kComparisons))
         ->type_name("WHAT")

@@ -123,8 +123,10 @@ std::vector<SparsePattern> patterns_to_try(const SliceModelOptions& options) {
                        "set it in --config, and leave out --as");
   } else if (request.form || options.comparison == Comparison::forms) {
     patterns.clear();
-  } else if (options.comparison == Comparison::lightning && !patterns.empty()) {
-    patterns.resize(1);
+  } else if (options.comparison == Comparison::lightning) {
+    // In dense prints patterns are no choice, and take some slicers minutes.
+    const bool tells_infill = options.slicer->described_print != nullptr;
+    patterns.resize(std::min<std::size_t>(patterns.size(), tells_infill ? 1 : 0));
   }
   return patterns;
 }

@@ -10,9 +10,9 @@ namespace aerate {
 
 // What is sliced beside solid, voids and modifiers, if nothing was asked for by name.
 enum class Comparison {
-  forms,      // nothing
-  lightning,  // the solid model in the slicer's pattern that takes least
-  patterns,   // in all its sparse patterns, and modifiers that hold lightning
+  forms,  // nothing
+  lightning,  // the solid model in the slicer's pattern that takes least, if its G-code says how dense the print is
+  patterns,  // in all its sparse patterns, and modifiers that hold lightning
 };
 
 struct SliceModelOptions {

@@ -735,15 +735,30 @@ TEST_F(Slicing, CuraEngineByTheCommand) {
       slice(block(), "cura-engine", {"--config", cura_definition(), "--config", settings, "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json report = Json::parse(result.out);
-  ASSERT_EQ(report["forms"].size(), 4u);
-  EXPECT_GT(report["forms"][2]["filament_saved_percent"], 5);
-  EXPECT_EQ(report["forms"][2]["form"], "voids");
+  ASSERT_EQ(report["forms"].size(), 3u);
+  EXPECT_EQ(report["forms"][1]["form"], "voids");
+  EXPECT_GT(report["forms"][1]["filament_saved_percent"], 5);
   const std::string gcode = read_bytes(output());
   EXPECT_TRUE(gcode.starts_with(";FLAVOR:Marlin\n"));
   EXPECT_FALSE(contains(gcode, ";TIME:6666"));  // the header with the true figures is in
   const auto written = std::ranges::find_if(
       report["forms"], [&](const Json& form) { return form["form"] == report["output"]["form"]; });
   EXPECT_DOUBLE_EQ(figures_of(gcode, cura_engine()).seconds.value(), (*written)["seconds"].get<double>());
+}
+
+TEST_F(Slicing, CuraEnginePrintsLightning) {
+  AERATE_NEEDS("CuraEngine");
+  if (cura_definition().empty())
+    GTEST_SKIP() << "no definitions for CuraEngine: scripts/install-dependencies --checks fetches them";
+  const fs::path settings =
+      folder_.write("settings.txt", "layer_height=0.3\ninfill_pattern=gyroid\ninfill_line_distance=2.7\n");
+  const ProcessResult result =
+      slice(block(), "cura-engine",
+            {"--config", cura_definition(), "--config", settings, "--as", "lightning", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json report = Json::parse(result.out);
+  EXPECT_EQ(report["output"]["form"], "lightning");
+  EXPECT_GT(report["forms"][1]["filament_saved_percent"], 10);
 }
 
 TEST_F(Slicing, CuraEnginePrintsModifiers) {
