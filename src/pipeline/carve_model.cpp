@@ -11,6 +11,7 @@
 #include "pipeline/held_notices.h"
 #include "pipeline/pack.h"
 #include "pipeline/print_prediction.h"
+#include "pipeline/worthy_modifiers.h"
 #include "printing/carve.h"
 
 namespace aerate {
@@ -74,6 +75,12 @@ CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, const
 // Voids in the shapes of a packing, as far as they drain if the options ask for it.
 MadeVoids make_spheres(const PreparedModel& model, const SurfaceIndex& surface, Packing packing,
                        const ProcessChoice& process, const HollowOptions& options, Monitor& monitor) {
+  if (options.modifiers && options.packing.spheres.empty() && is_default(process, Limit::min_radius)) {
+    const double tolerance = tolerance_within(packing, model.mesh.triangles.size(), options, monitor);
+    packing = worthy_modifiers(
+        model, packing, options,
+        [&](const Packing& some) { return carve_sealed(model, some, tolerance, monitor); }, monitor);
+  }
   auto [made, drainage, outer] = drain(model, surface, std::move(packing), process, options, monitor);
   CarvedModel carved = carve(model, surface, made, drainage, std::move(outer), options, monitor);
   return {std::move(made), std::nullopt, std::move(drainage), std::move(carved)};

@@ -94,7 +94,8 @@ TEST(PrintOptions, ModifiersThatMakeAPrintHeavierAreRefused) {
                      "-o", job.output("out.3mf"), "--as", "modifiers", "--json", "-"},
                     options));
   };
-  const std::vector<std::string> bad{"--shape", "spheres", "--max-radius", "2", "--modifier-infill", "5"};
+  const std::vector<std::string> bad{"--shape",      "spheres", "--min-radius",      "0.62",
+                                     "--max-radius", "2",       "--modifier-infill", "5"};
   const ProcessResult refused = modifiers(with(bad, {"--infill", "15%"}));
   EXPECT_EQ(refused.exit_code, kNothing);
   EXPECT_TRUE(contains(refused.err, "would become heavier"));
@@ -114,6 +115,24 @@ TEST(PrintOptions, ModifiersThatMakeAPrintHeavierAreRefused) {
   const Json cells = Json::parse(modifiers({"--infill", "15%"}).out);
   EXPECT_LT(cells["print"]["filament_change_percent"].get<double>(), -15);
   EXPECT_TRUE(cells["print"]["break_even_radius_mm"].is_null());
+}
+
+TEST(PrintOptions, ModifiersTooSmallToMatterAreNotMade) {
+  const Job job;
+  const auto modifiers = [&](const std::vector<std::string>& options) {
+    const ProcessResult result =
+        run(with({AERATE_EXECUTABLE, "hollow", job.input("model.stl", make_box({0, 0, 0}, {20, 16, 30})),
+                  "-o", job.output("out.3mf"), "--as", "modifiers", "--shape", "spheres", "--json", "-"},
+                 options));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return Json::parse(result.out);
+  };
+  const Json few = modifiers({}), all = modifiers({"--min-radius", "0.62"});
+  EXPECT_LT(few["voids"]["count"].get<int>(), all["voids"]["count"].get<int>() / 2);
+  EXPECT_TRUE(contains(few["notices"].dump(), "smaller ones would save less than 0.5 %"));
+  EXPECT_EQ(all["notices"], Json::array());
+  EXPECT_LT(few["print"]["filament_after_mm3"].get<double>(),
+            1.0051 * all["print"]["filament_after_mm3"].get<double>());
 }
 
 // Nothing, or less than nothing, would be saved.

@@ -115,9 +115,10 @@ TEST_F(EconomicsSlicer, ModifiersInABlock) {
   const auto block = folder_.path() / "block.stl";
   write_mesh(make_box({0, 0, 0}, {26, 26, 26}), block, MeshFormat::stl);
   expect_as_predicted(block, {"--as", "modifiers"}, {"15%"});
-  expect_as_predicted(
-      block, {"--as", "modifiers", "--shape", "spheres", "--max-radius", "2", "--modifier-infill", "5"},
-      {"15%"});
+  expect_as_predicted(block,
+                      {"--as", "modifiers", "--shape", "spheres", "--min-radius", "0.62", "--max-radius", "2",
+                       "--modifier-infill", "5"},
+                      {"15%"});
 }
 
 // With the voids that the command makes of its own accord.
