@@ -91,7 +91,8 @@ struct HollowCommand {
     command
         .add_option(
             "--as", void_form,
-            "What voids become: voids (inward shells) or, in a 3MF, modifiers (the solid model with "
+            "What voids become: voids (inward shells) or, in a 3MF (for Slic3r AMF), modifiers (the solid "
+            "model with "
             "volumes of lower infill, round which no walls are printed; --wall is by default as thick as "
             "the perimeters)")
         ->check(CLI::IsMember({"voids", "modifiers"}))

@@ -15,7 +15,7 @@
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 
-// What PrusaSlicer makes of a 3MF with modifiers: less filament at sparse infill too, where voids cost walls.
+// What PrusaSlicer makes of a 3MF with modifiers: less filament than solid, where voids cost walls.
 namespace aerate::test {
 namespace {
 
