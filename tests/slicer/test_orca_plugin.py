@@ -374,7 +374,7 @@ class Cutting(WithPlugin):
         self.assertAlmostEqual(volume(vertices, triangles) / abs(volume(sliced.vertices, PRISM[1])), 1, places=5)
 
     def check_cut(self, sliced, before, is_inside):
-        """Points of the sparse infill are left out just where they are inside of what was packed, well or not at all."""
+        """Points of the sparse infill are left out just where they are inside of what was packed."""
         hits = misses = 0
         for at, layer in enumerate(sliced.layers):
             region = layer.regions()[0]
@@ -628,6 +628,17 @@ class Failing(WithPlugin):
         turned = Sliced()
         turned.object._trafo = times(turning(2, 90), turned.object._trafo)
         self.check(turned, "not where its mesh is")
+        grown = Sliced()
+        grown.object._trafo = times(scaling(1.1, 1.1, 1), grown.object._trafo)
+        self.check(grown, "not where its mesh is")
+
+    def test_layers_that_a_negative_volume_cut(self):
+        mesh = box_mesh(-5, -5, 0, 5, 5, 10)
+        layers = [(z, (-5.0, -5.0, 2.0, 5.0)) for z in (1.0, 5.0, 9.0)]
+        self.assertTrue(self.plugin.fits(*mesh, layers, True))
+        self.assertFalse(self.plugin.fits(*mesh, layers, False))
+        self.assertFalse(self.plugin.fits(*mesh, [(z, (-7.0, -5.0, 2.0, 5.0)) for z, _ in layers], True))
+        self.assertFalse(self.plugin.fits(*mesh, [], True))
 
     def test_a_mesh_that_is_none(self):
         self.options()
@@ -674,7 +685,8 @@ class Failing(WithPlugin):
         before = sliced.state()
         cancelled = threading.Event()
         mark = os.path.join(self.folder, "ended")
-        self.options(program=self.program("sleep 30; touch %s" % mark))
+        # The program may be a script: what it has started ends as well.
+        self.options(program=self.program("(sleep 1.5; touch %s) &\nsleep 30" % mark))
         timer = threading.Timer(0.4, cancelled.set)
         timer.start()
         self.addCleanup(timer.join)
@@ -683,6 +695,7 @@ class Failing(WithPlugin):
         self.assertLess(time.monotonic() - start, 10)
         self.assertEqual((result.status, result.message), (stub.PluginResult.Skipped, "cancelled"))
         self.assertEqual(sliced.state(), before)
+        time.sleep(1.5)
         self.assertFalse(os.path.exists(mark))
 
     def test_cancelling_at_any_question(self):

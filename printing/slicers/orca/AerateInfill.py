@@ -377,7 +377,7 @@ def settings_file(options, wall, has_solid):
 
 
 def width_of_lines(text, nozzle):
-    """Orca's setting of a line width: mm, percent of the nozzle, or 0 for a choice of its own. None if it says nothing."""
+    """Of Orca's setting: mm, or percent of the nozzle; None if it is 0, which leaves it to Orca, or nothing."""
     try:
         number = float(text.rstrip("%"))
     except (AttributeError, ValueError):
@@ -678,7 +678,10 @@ def without(whole, cuts):
 
 
 def planned_cuts(regions, sections, unit, cancelled):
-    """For each collection of surfaces that changes: (collection, [(surface's index, its new shape or None to keep)])."""
+    """The plan, and how much of the sparse infill it leaves out, percent.
+
+    For each collection of surfaces that changes: (collection, [(surface's index, its new shape or None to keep)]).
+    """
     plan = []
     area_before = area_after = 0.0
     for layer, region in regions:
