@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 
 #include "core/facet_distance.h"
 #include "packing/hole_rules.h"
@@ -54,8 +55,29 @@ HoleShowing::HoleShowing(const TubeClearance& clearance, Vec3d up, double plate,
       request_(request),
       views_(all_round(up)) {}
 
+// Where a hole comes out across an edge its side may leave the model by the face on the plate, though its middle does not.
+bool HoleShowing::reaches_plate(const Tube& hole) const {
+  if (opens_onto_plate(hole, up_, plate_)) return true;
+  const Vec3d axis = direction_of(hole);
+  const double lowest = std::min(0.0, kCutBeyond * dot(axis, up_)) - 1;
+  if (dot(hole.end, up_) + lowest * hole.radius >= plate_ + kLeastAbovePlate) return false;
+  constexpr int kLines = 16;
+  const TubeFrame frame = frame_of(hole, up_);
+  // From where all of the side is still within the model.
+  const double whole = length(hole.end - hole.start);
+  const Vec3d inside = hole.end - axis * std::min(whole, 2 * hole.radius);
+  for (int i = 0; i < kLines; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kLines;
+    const Vec3d start =
+        inside + (frame.down * std::cos(angle) + frame.across * std::sin(angle)) * hole.radius;
+    const auto out = clearance_.first_hit(start, axis, 2 * hole.radius + kCutBeyond * hole.radius);
+    if (out && dot(start + axis * *out, up_) < plate_ + kLeastAbovePlate) return true;
+  }
+  return false;
+}
+
 bool HoleShowing::is_allowed(const Tube& hole) const {
-  if (request_.avoids_plate && opens_onto_plate(hole, up_, plate_)) return false;
+  if (request_.avoids_plate && reaches_plate(hole)) return false;
   const HoleSides& sides = request_.sides;
   if (sides.is_anywhere()) return true;
   const Vec3d normal = clearance_.normal_near(hole.end);

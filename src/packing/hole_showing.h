@@ -28,6 +28,8 @@ class HoleShowing {
   double of(const Tube& hole) const;
 
  private:
+  bool reaches_plate(const Tube& hole) const;
+
   const TubeClearance& clearance_;
   Vec3d up_, back_;
   double plate_;

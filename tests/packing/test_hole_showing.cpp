@@ -118,6 +118,9 @@ TEST(HoleShowing, AvoidsTheBuildPlateWhereThatIsAskedFor) {
   EXPECT_FALSE(box.allows({0, 20, kRadius + 0.2}, {-1, 0, 0}));
   EXPECT_TRUE(box.allows({0, 20, kRadius + 0.4}, {-1, 0, 0}));
   EXPECT_TRUE(box.allows({20, 20, 40}, kUp));
+  // A leaning hole whose middle comes out of the wall, and its lower side of the bottom.
+  EXPECT_FALSE(box.allows({0, 20, 2}, normalised(Vec3d{-0.8, 0, -0.6})));
+  EXPECT_TRUE(box.allows({0, 20, 2}, normalised(Vec3d{-0.8, 0, 0.6})));
 }
 
 TEST(HoleShowing, SaysWhatEachHoleIsFor) {
