@@ -79,7 +79,10 @@ class Hook : public testing::Test {
     return all;
   }
   std::vector<std::string> with_model() const {
-    return {"--model", model_, "--slicer-path", fake_.program(), "--max-radius", "5", "--min-radius", "2"};
+    // Spheres, which are quicker than cells.
+    return {"--model",      model_,    "--slicer-path", fake_.program(),
+            "--shape",      "spheres", "--max-radius",  "5",
+            "--min-radius", "2"};
   }
   ProcessResult hook(const std::vector<std::string>& options, Environment environment = {}) const {
     if (std::ranges::count(environment, "TMPDIR", &Environment::value_type::first) == 0)
