@@ -262,11 +262,12 @@ std::string new_content(const std::string& original, const HookReport& report) {
 
 HookOptions with_model_found(HookOptions options, const std::string& gcode, const SlicerProfile& slicer,
                              Monitor& monitor) {
-  HollowOptions& hollow = options.request.hollow;
+  const HollowOptions& hollow = options.request.hollow;
   if (options.model_folder.empty() || !hollow.model.empty()) return options;
   PrintNames names{.object = std::nullopt, .output = output_name().value_or("")};
   if (slicer.labelled_object != nullptr) names.object = slicer.labelled_object(gcode);
-  hollow.model = model_of_print(options.model_folder, names, size_of_print(gcode), hollow.load, monitor);
+  options.request.set_model(
+      model_of_print(options.model_folder, names, size_of_print(gcode), hollow.load, monitor));
   return options;
 }
 

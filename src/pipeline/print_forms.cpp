@@ -217,6 +217,11 @@ const char* use_of(PrintForm form) {
   return "";
 }
 
+void FormRequest::set_model(const fs::path& model) {
+  hollow.model = modifiers.model = model;
+  for (HollowOptions& form : voids) form.model = model;
+}
+
 bool is_project(const std::filesystem::path& model) {
   return ::strcasecmp(model.extension().c_str(), ".3mf") == 0;
 }

@@ -38,6 +38,8 @@ struct FormRequest {
       hollow;  // with the model; `output`, `modifiers` and what describes the print are set for each form
   std::vector<HollowOptions> voids;  // the same in the shapes that voids may have, the preferred one first
   HollowOptions modifiers;           // the same in the shape of modifiers
+
+  void set_model(const std::filesystem::path& model);  // of all of these
 };
 
 // A form as the slicer printed it.
