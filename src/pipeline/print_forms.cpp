@@ -217,7 +217,7 @@ const char* use_of(PrintForm form) {
   return "";
 }
 
-void FormRequest::set_model(const fs::path& model) {
+void FormRequest::set_model(const std::filesystem::path& model) {
   hollow.model = modifiers.model = model;
   for (HollowOptions& form : voids) form.model = model;
 }
