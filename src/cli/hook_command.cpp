@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/form_options.h"
@@ -19,6 +20,7 @@
 #include "core/error.h"
 #include "core/listed.h"
 #include "pipeline/hook.h"
+#include "printing/slicers/text_file.h"
 
 namespace aerate::cli {
 namespace {
@@ -148,10 +150,15 @@ struct HookCommand {
   void run_logged(const HookOptions& options) const {
     std::optional<HookReport> done;
     const JobFiles files{form.inputs(model), {options.gcode}};
-    run_reported(run_options, files, [&](Monitor& monitor) {
+    // A slicer that shows what a script says should show what matters.
+    const Verbosity verbosity = isatty(STDERR_FILENO) != 0 ? run_options.verbosity() : Verbosity::quiet;
+    const auto run = [&](Monitor& monitor) {
       done = run_hook(options, monitor);
       return *done;
-    });
+    };
+    run_reported(run_options, files, run, verbosity);
+    if (done && done->is_refused)
+      print_note(fmt::format("the print stays as it is: {}", aerate::on_one_line(done->remark)));
     if (done && !log.empty()) append_to_log(to_text(*done));
   }
 

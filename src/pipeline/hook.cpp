@@ -300,7 +300,6 @@ HookReport run_hook(const HookOptions& options, Monitor& monitor) {
   } catch (const Error& error) {
     if (options.is_strict || error.code() == ExitCode::interrupted) throw;
     leave_as_it_is(report, error);
-    log.notice("the print stays as it is: " + on_one_line(report.remark));
   }
   log.stage("write");
   const std::string content = new_content(original, report);

@@ -219,7 +219,7 @@ const char* use_of(PrintForm form) {
 
 void FormRequest::set_model(const std::filesystem::path& model) {
   hollow.model = modifiers.model = model;
-  for (HollowOptions& form : voids) form.model = model;
+  for (HollowOptions& options : voids) options.model = model;
 }
 
 bool is_project(const std::filesystem::path& model) {
