@@ -55,40 +55,54 @@ HoleShowing::HoleShowing(const TubeClearance& clearance, Vec3d up, double plate,
       request_(request),
       views_(all_round(up)) {}
 
-// Where a hole comes out across an edge its side may leave the model by the face on the plate, though its middle does not.
-bool HoleShowing::reaches_plate(const Tube& hole) const {
-  if (opens_onto_plate(hole, up_, plate_)) return true;
-  const Vec3d axis = direction_of(hole);
-  const double lowest = std::min(0.0, kCutBeyond * dot(axis, up_)) - 1;
-  if (dot(hole.end, up_) + lowest * hole.radius >= plate_ + kLeastAbovePlate) return false;
+// Where a hole comes out across an edge its side leaves the model by another face than its middle does.
+std::vector<Vec3d> HoleShowing::rim_of(const Tube& hole) const {
   constexpr int kLines = 16;
+  const Vec3d axis = direction_of(hole);
   const TubeFrame frame = frame_of(hole, up_);
   // From where all of the side is still within the model.
-  const double whole = length(hole.end - hole.start);
-  const Vec3d inside = hole.end - axis * std::min(whole, 2 * hole.radius);
+  const Vec3d inside = hole.end - axis * std::min(length(hole.end - hole.start), 2 * hole.radius);
+  std::vector<Vec3d> rim;
+  rim.reserve(kLines);
   for (int i = 0; i < kLines; ++i) {
     const double angle = 2 * std::numbers::pi * i / kLines;
     const Vec3d start =
         inside + (frame.down * std::cos(angle) + frame.across * std::sin(angle)) * hole.radius;
-    const auto out = clearance_.first_hit(start, axis, 2 * hole.radius + kCutBeyond * hole.radius);
-    if (out && dot(start + axis * *out, up_) < plate_ + kLeastAbovePlate) return true;
+    const auto out = clearance_.first_hit(start, axis, (2 + kCutBeyond) * hole.radius);
+    rim.push_back(start + axis * out.value_or(0));  // without: it is outside already
   }
-  return false;
+  return rim;
+}
+
+bool HoleShowing::reaches_plate(const Tube& hole) const {
+  if (opens_onto_plate(hole, up_, plate_)) return true;
+  const double lowest = std::min(0.0, kCutBeyond * dot(direction_of(hole), up_)) - 1;
+  const double highest_allowed = plate_ + kLeastAbovePlate;
+  if (dot(hole.end, up_) + lowest * hole.radius >= highest_allowed) return false;
+  return std::ranges::any_of(rim_of(hole), [&](Vec3d p) { return dot(p, up_) < highest_allowed; });
+}
+
+bool HoleShowing::is_on_allowed_side(Vec3d place) const {
+  const HoleSides& sides = request_.sides;
+  const Vec3d normal = clearance_.normal_near(place);
+  const auto faces = [&](Vec3d direction) { return dot(normal, direction) >= kSide; };
+  if (!sides.on.empty() && std::ranges::none_of(sides.on, faces)) return false;
+  return std::ranges::none_of(sides.not_on, faces);
 }
 
 bool HoleShowing::is_allowed(const Tube& hole) const {
   if (request_.avoids_plate && reaches_plate(hole)) return false;
   const HoleSides& sides = request_.sides;
   if (sides.is_anywhere()) return true;
-  const Vec3d normal = clearance_.normal_near(hole.end);
-  const auto faces = [&](Vec3d direction) { return dot(normal, direction) >= kSide; };
-  if (!sides.on.empty() && std::ranges::none_of(sides.on, faces)) return false;
-  if (std::ranges::any_of(sides.not_on, faces)) return false;
+  if (!is_on_allowed_side(hole.end)) return false;
   const double height = dot(hole.end, up_);
   if (height > sides.not_above || height < sides.not_below) return false;
-  return std::ranges::none_of(sides.not_within, [&](const Box3d& box) {
-    return distance_squared(box, {hole.end, hole.end}) <= hole.radius * hole.radius;
-  });
+  if (std::ranges::any_of(sides.not_within, [&](const Box3d& box) {
+        return distance_squared(box, {hole.end, hole.end}) <= hole.radius * hole.radius;
+      }))
+    return false;
+  if (sides.on.empty() && sides.not_on.empty()) return true;
+  return std::ranges::all_of(rim_of(hole), [&](Vec3d p) { return is_on_allowed_side(p); });
 }
 
 double HoleShowing::of(const Tube& hole) const {

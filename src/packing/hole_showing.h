@@ -19,7 +19,7 @@ class HoleShowing {
   // build plate. The clearance must outlive this.
   HoleShowing(const TubeClearance& clearance, Vec3d up, double plate, const DrainageRequest& request);
 
-  // Does the request allow a hole where this one meets the surface?
+  // Does the request allow a hole where this one meets the surface, with all of its rim?
   bool is_allowed(const Tube& hole) const;
 
   // How much the place shows, 0 to 1: the share of what a lamp at each direction of view would give it that the model does not
@@ -28,7 +28,10 @@ class HoleShowing {
   double of(const Tube& hole) const;
 
  private:
+  // Places on the surface where lines of the hole's side leave it.
+  std::vector<Vec3d> rim_of(const Tube& hole) const;
   bool reaches_plate(const Tube& hole) const;
+  bool is_on_allowed_side(Vec3d place) const;
 
   const TubeClearance& clearance_;
   Vec3d up_, back_;

@@ -112,9 +112,9 @@ std::optional<PrintedCups> cups_of(const HollowedModel& hollowed, const HollowOp
                                    Monitor& monitor) {
   constexpr double kColumnsPerChannel = 8;
   const Process& process = hollowed.request.process.process;
-  if (!hollowed.drainage || !process.limits.contains(Limit::cup)) return std::nullopt;
+  if (!options.drainage || !process.limits.contains(Limit::cup)) return std::nullopt;
   monitor.stage("cups");
-  const double spacing = 2 * hollowed.drainage->request.channel_radius / kColumnsPerChannel;
+  const double spacing = 2 * options.drainage->channel_radius / kColumnsPerChannel;
   auto cups = printed_cups(cups_of(hollowed.carved.solid.mesh, hollowed.packing.limits.roof.up, spacing),
                            process, options.build);
   warn_of_suction(*cups, process, monitor);

@@ -131,7 +131,9 @@ std::vector<HollowOptions> options_for(PrintForm form, const FormJob& job,
   for (const HollowOptions& shaped : request.voids) {
     ways.push_back(printed_as(shaped, print));
     // Which shape is better can be told of a print that is known alone.
-    if (!ways.back().infill_is_known) break;
+    if (ways.back().infill_is_known) continue;
+    ways.back().heavier = HeavierPrint::allow;  // the slicer's own figures say it
+    break;
   }
   return ways;
 }

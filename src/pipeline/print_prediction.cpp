@@ -235,7 +235,7 @@ void judge(const PrintPrediction& prediction, const HollowOptions& options, Moni
         "the print may become heavier: {} is predicted, to within {:g} points; `aerate slice` asks "
         "your slicer",
         change_in_words(prediction), in_percent(kUncertainShare)));
-  } else if (!tells && prediction.usual.heavier()) {
+  } else if (!tells && prediction.usual.heavier() && options.heavier == HeavierPrint::refuse) {
     monitor.notice(fmt::format("{} (--infill says what yours is)", verdict_in_words(prediction)));
   }
 }

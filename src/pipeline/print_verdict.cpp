@@ -47,10 +47,11 @@ std::string other_ways(const PrintPrediction& prediction) {
   if (prediction.of_modifiers) return fmt::format("{}, where it has one, may save more", kLightning);
   if (!prediction.usual.heavier()) return "";
   const bool do_modifiers_save = prediction.as_modifiers && *prediction.as_modifiers < -kUncertainShare;
-  return do_modifiers_save
-             ? fmt::format("for sparse prints: --as modifiers ({:+.0f} % with these voids), or {}",
-                           rounded_percent(*prediction.as_modifiers), kLightning)
-             : fmt::format("for sparse prints: {}", kLightning);
+  return do_modifiers_save ? fmt::format(
+                                 "for sparse prints: --as modifiers ({:+.0f} % with these voids; the cells "
+                                 "that it makes as a rule save more), or {}",
+                                 rounded_percent(*prediction.as_modifiers), kLightning)
+                           : fmt::format("for sparse prints: {}", kLightning);
 }
 
 }  // namespace

@@ -88,6 +88,11 @@ TEST(HoleShowing, AllowsTheSidesThatAreAskedFor) {
   // A hole's direction is not that of the surface.
   EXPECT_TRUE(box.allows({0, 20, 20}, normalised(Vec3d{-1, 0, 1.5})));
 
+  // Across the edge to a side that is not asked for.
+  EXPECT_FALSE(box.allows({0, 39, 20}, {-1, 0, 0}));
+  EXPECT_FALSE(box.allows({0, 20, 38.5}, normalised(Vec3d{-1, 0, 0.5})));
+  EXPECT_TRUE(box.allows({0, 20, 1}, {-1, 0, 0}));  // this one is
+
   box.request.sides = {};
   box.request.sides.not_on = {{-1, 0, 0}};
   EXPECT_FALSE(box.allows({0, 20, 20}, {-1, 0, 0}));
