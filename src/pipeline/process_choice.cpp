@@ -68,7 +68,7 @@ std::string figures_of(const Process& process) {
   std::string text;
   for (const auto& [limit, figure] : process.limits) {
     const LimitRow& row = row_of(limit);
-    fmt::format_to(std::back_inserter(text), "  {:<12}{:>5g} {}: {}\n", row.name, figure.value,
+    fmt::format_to(std::back_inserter(text), "  {:<14} {:>5g} {}: {}\n", row.name, figure.value,
                    row.unit.symbol, printable(figure.source));
   }
   return text;
@@ -83,7 +83,7 @@ std::string in_words(const std::string& name, const Process& process) {
 // A process of the user's own by the name that it is chosen by; what is wrong with it if it cannot be.
 std::string own_in_words(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
-  const std::string place = fmt::format("  {:<12}{}\n", "file", printable(file.string()));
+  const std::string place = fmt::format("  {:<14} {}\n", "file", printable(file.string()));
   if (find_process(name) != nullptr)
     return fmt::format("{}: the built-in process of this name goes first, give the path of yours\n{}",
                        printable(name), place);

@@ -301,7 +301,7 @@ TEST(ProcessOptions, TheListHasTheUsersOwnAfterTheBuiltInOnes) {
   EXPECT_LT(text.find("\nmetal: "), mine);
   const auto folder = job.folder() / "config/aerate/processes";
   for (const std::string& part :
-       {"  file        " + (folder / "mine.json").string(), std::string("1.5 mm: mine.json"),
+       {"  file           " + (folder / "mine.json").string(), std::string("1.5 mm: mine.json"),
         "broken: broken: " + (folder / "broken.json").string() + ": not JSON",
         std::string("thin: broken: thin: wall 0.1 mm"),
         std::string("fdm: the built-in process of this name")})
