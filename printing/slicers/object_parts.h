@@ -22,9 +22,10 @@ struct ObjectPart {
   std::string name;
   std::size_t first_triangle = 0;
   std::size_t triangle_count = 0;
-  bool is_modifier = false;  // not a body, but where the print has this infill instead of its own
-  std::string infill;        // "12.5%"; empty for a body
-  std::string pattern = {};  // of a modifier, as slicers call it; empty where it is the print's own
+  bool is_modifier = false;     // not a body, but where the print has this infill instead of its own
+  std::string infill;           // "12.5%"; empty for a body
+  std::string pattern = {};     // of a modifier, as slicers call it; empty where it is the print's own
+  bool blocks_support = false;  // neither, but where no supports are built
 
   std::size_t end() const { return first_triangle + triangle_count; }
   bool operator==(const ObjectPart&) const = default;
@@ -32,6 +33,9 @@ struct ObjectPart {
 
 // A solid's mesh with its void shells turned outward, as bodies of their own, and back.
 Mesh with_void_shells_turned(Mesh mesh, const Solid& solid);
+
+// What the part of a file that holds support blockers of voids is called, by which it is known when the file is read.
+inline constexpr const char* kSupportBlockers = "no supports in voids";
 
 // What slicers call the infill that grows up like trees, only where it has something to hold.
 inline constexpr const char* kLightning = "lightning";

@@ -11,6 +11,7 @@
 namespace aerate {
 namespace {
 
+constexpr const char* kBlockerType = "SupportBlocker";
 constexpr const char* kPartList = "Metadata/Slic3r_PE_model.config";
 
 // Ends with its settings; newer versions say so in a line of its own.
@@ -43,11 +44,17 @@ std::string volume_of(const ObjectPart& part, const std::string& name) {
    <metadata type="volume" key="fill_density" value="{3}" />
 {4}  </volume>
 )";
+  constexpr const char* kBlocker = R"(  <volume firstid="{1}" lastid="{2}">
+   <metadata type="volume" key="name" value="{0}" />
+   <metadata type="volume" key="volume_type" value="SupportBlocker" />
+  </volume>
+)";
   // What is small in a modifier would become solid by the print's own setting.
   constexpr const char* kPattern = R"(   <metadata type="volume" key="fill_pattern" value="{}" />
    <metadata type="volume" key="solid_infill_below_area" value="0" />
 )";
   const std::size_t last = part.end() - 1;
+  if (part.blocks_support) return fmt::format(kBlocker, name, part.first_triangle, last);
   if (!part.is_modifier) return fmt::format(kBody, name, part.first_triangle, last);
   const std::string pattern = part.pattern.empty() ? "" : fmt::format(kPattern, part.pattern);
   return fmt::format(kModifier, name, part.first_triangle, last, part.infill, pattern);
@@ -86,9 +93,10 @@ std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
   for (const pugi::xml_node volume : list.child("config").child("object").children("volume")) {
     const std::size_t first = volume.attribute("firstid").as_ullong();
     const std::size_t last = volume.attribute("lastid").as_ullong();
-    const bool is_modifier = metadata_of(volume, "volume_type") == "ParameterModifier";
-    parts.push_back({metadata_of(volume, "name"), first, last + 1 - first, is_modifier,
-                     metadata_of(volume, "fill_density"), metadata_of(volume, "fill_pattern")});
+    const std::string type = metadata_of(volume, "volume_type");
+    parts.push_back({metadata_of(volume, "name"), first, last + 1 - first, type == "ParameterModifier",
+                     metadata_of(volume, "fill_density"), metadata_of(volume, "fill_pattern"),
+                     type == kBlockerType});
   }
   return parts;
 }
@@ -102,6 +110,11 @@ std::optional<std::string> other_kind(const pugi::xml_node& volume) {
 bool is_modifier(const pugi::xml_node& volume) {
   return metadata_of(volume, "volume_type") == "ParameterModifier" ||
          (metadata_of(volume, "volume_type").empty() && metadata_of(volume, "modifier") == "1");
+}
+
+bool is_own_blocker(const pugi::xml_node& volume) {
+  return metadata_of(volume, "volume_type") == kBlockerType &&
+         metadata_of(volume, "name") == kSupportBlockers;
 }
 
 VolumeTriangles triangles_of(const pugi::xml_node& volume) {
@@ -228,12 +241,14 @@ SlicerProfile prusa_slicer() {
   row.repeats_gcode = true;
   row.project = project_facts;
   row.labelled_object = labelled_object;
-  row.modifiers = {.flavor = "prusa",
-                   .volumes = VolumeList{kPartList, "volume", other_kind, is_modifier, triangles_of},
-                   .file = file_for,
-                   .named = named,
-                   .read = read_parts,
-                   .has_lightning = true};
+  row.modifiers = {
+      .flavor = "prusa",
+      .volumes = VolumeList{kPartList, "volume", other_kind, is_modifier, triangles_of, is_own_blocker},
+      .file = file_for,
+      .named = named,
+      .read = read_parts,
+      .has_lightning = true,
+      .has_blockers = true};
   row.patterns = sparse_patterns();
   row.described_print = described_print;
   return row;

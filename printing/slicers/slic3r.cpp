@@ -134,6 +134,13 @@ ChildCommand command_for(const fs::path& program, const SliceJob& job) {
   return command;
 }
 
+// Slic3r has no supports that are only painted; slicers that come from it say whether others are built.
+bool supports_everywhere(std::string_view gcode) {
+  return setting_in(gcode, "support_material") == "1" &&
+         setting_in(gcode, "support_material_buildplate_only").value_or("0") == "0" &&
+         setting_in(gcode, "support_material_auto").value_or("1") == "1";
+}
+
 ChildCommand list_settings(const fs::path& program, const fs::path& file) {
   return {{program, "--save", file}, {}, file.parent_path()};
 }
@@ -250,6 +257,8 @@ SlicerProfile slic3r() {
                  {"filament used", &GcodeFigures::filament_g, grams_of, true},
                  {"filament used", &GcodeFigures::filament_cm3, number_in_brackets, true}};
   row.begins_layer = begins_layer;
+  row.supports_everywhere = supports_everywhere;
+  row.supports_on_plate = "support_material_buildplate_only = 1";
   row.modifiers = {
       .flavor = "slic3r", .ending = ".amf", .file = file_for, .read = read_parts, .read_mesh = read_mesh};
   return row;

@@ -40,13 +40,13 @@ struct FigureLine {
   bool adds_up = false;  // there is such a line for each extruder
 };
 
-// How a slicer keeps the parts of an object, modifiers among them, in a file.
+// How a slicer keeps the parts of an object, modifiers and support blockers among them, in a file.
 struct ModifierFormat {
   std::string flavor;           // as on the command line
   std::string ending = ".3mf";  // of the file
   // How a package says which volumes are none of the model; absent for a file that is not read as a model.
   std::optional<VolumeList> volumes;
-  // The bytes of a file of a mesh that these parts cover in order. The object is called as the model's part is if
+  // The bytes of a file of a mesh that these parts cover in order; the second may be of support blockers. The object is called as the model's part is if
   // `object_name` is empty.
   std::string (*file)(const Mesh& mesh, const ObjectPart& model, const ObjectPart& voids,
                       const std::string& object_name) = nullptr;
@@ -58,6 +58,7 @@ struct ModifierFormat {
   // The mesh of such a file, parts in order; null for 3MF, which is read as any model is. Throws FailureError as well.
   Mesh (*read_mesh)(const std::filesystem::path& file) = nullptr;
   bool has_lightning = false;  // the infill kLightning
+  bool has_blockers = false;   // volumes in which no supports are built
 };
 
 // An infill pattern that the slicer has for prints that take little.
@@ -119,6 +120,9 @@ struct SlicerProfile {
   std::vector<SparsePattern> patterns;
   // If given: what a G-code says that it was printed as; nothing for one that does not say its infill.
   std::optional<DescribedPrint> (*described_print)(std::string_view gcode) = nullptr;
+  // If given: whether a G-code says that supports are built wherever they are wanted, so in voids too.
+  bool (*supports_everywhere)(std::string_view gcode) = nullptr;
+  std::string supports_on_plate;  // the setting, as a line, with which they are built on the plate alone
 };
 
 // The rows, each made in a room of its own.

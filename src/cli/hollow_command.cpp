@@ -84,7 +84,8 @@ struct HollowCommand {
         cells(command, words_of_cells()),
         print(command, config),
         run_options(command),
-        modifier_options(config) {
+        modifier_options(config),
+        flavor_option(config) {
     command.add_option("-o,--output", output, "The result: " + endings_that_are_written())
         ->required()
         ->type_name("FILE");
@@ -98,12 +99,17 @@ struct HollowCommand {
         ->check(CLI::IsMember({"voids", "modifiers"}))
         ->type_name("FORM")
         ->capture_default_str();
-    modifier_options.add(command
-                             .add_option("--flavor", flavor,
-                                         "Modifiers: those of " + listed(of_slicers(described_flavor), "or"))
-                             ->check(CLI::IsMember(of_slicers(flavor_of)))
-                             ->type_name("FLAVOR")
-                             ->capture_default_str());
+    flavor_option.add(command
+                          .add_option("--flavor", flavor,
+                                      "Modifiers and support blockers: those of " +
+                                          listed(of_slicers(described_flavor), "or"))
+                          ->check(CLI::IsMember(of_slicers(flavor_of)))
+                          ->type_name("FLAVOR")
+                          ->capture_default_str());
+    command.add_flag(
+        "--support-blockers", support_blockers,
+        "Sealed voids in a 3MF: a volume for each in which the slicer of --flavor builds no supports, which "
+        "would fill voids where they are built everywhere. Other programs show these volumes as bodies");
     modifier_infill_option = add_modifier_infill(command, modifier_infill);
     modifier_options.add(modifier_infill_option);
     modifier_options.add(
@@ -181,6 +187,27 @@ struct HollowCommand {
         ->capture_default_str();
   }
 
+  const SlicerProfile* slicer_of_flavor() const {
+    return &*std::ranges::find(slicers(), std::vector{flavor}, flavor_of);
+  }
+
+  // Whose support blockers voids get, if any.
+  const SlicerProfile* blockers(const HollowOptions& options) const {
+    if (!support_blockers) return nullptr;
+    if (options.modifiers)
+      throw UsageError(
+          "--as modifiers leaves no voids that supports could fill: --support-blockers has no use",
+          "leave it out");
+    if (options.drainage)
+      throw UsageError("--support-blockers is for sealed voids, and these drain",
+                       "leave it out, and build supports on the plate only; or leave out --drain");
+    const SlicerProfile* const slicer = slicer_of_flavor();
+    if (!slicer->modifiers->has_blockers)
+      throw UsageError(fmt::format("files of flavor {} hold no support blockers", flavor),
+                       "leave out --support-blockers");
+    return slicer;
+  }
+
   // The one target that was given, if any.
   std::optional<SavingTarget> target(const HollowOptions& options) const {
     if (!target_mass && !target_saving) return std::nullopt;
@@ -227,8 +254,9 @@ struct HollowCommand {
             {"auto", SurfaceMode::automatic}, {"keep", SurfaceMode::keep}, {"remesh", SurfaceMode::remesh}}
             .at(surface);
     if (void_form == "voids") modifier_options.require_none("without --as modifiers");
-    if (void_form == "modifiers")
-      options.modifiers = {&*std::ranges::find(slicers(), std::vector{flavor}, flavor_of), modifier_infill};
+    if (void_form == "voids" && !support_blockers)
+      flavor_option.require_none("without --as modifiers or --support-blockers");
+    if (void_form == "modifiers") options.modifiers = {slicer_of_flavor(), modifier_infill};
     options = print.applied_to(std::move(options));
     // Modifiers leave the model solid: nothing is trapped in them.
     if (options.modifiers && !drainage.plugs().empty())
@@ -243,6 +271,7 @@ struct HollowCommand {
     } else {
       options = drainage.applied_to(std::move(options));
     }
+    options.support_blockers = blockers(options);
     if (options.line_width_origin)
       options.packing.process = followed_by_lines(std::move(options.packing.process),
                                                   options.print.line_width, *options.line_width_origin);
@@ -336,13 +365,14 @@ struct HollowCommand {
   CellCommandOptions cells;
   PrintOptions print;
   RunOptions run_options;
-  ModifierOnlyOptions modifier_options;
+  ModifierOnlyOptions modifier_options, flavor_option;
   std::string output;
   std::string void_form = "voids";
   std::string flavor = of_slicers(flavor_of).front();
   double modifier_infill = ModifierOptions{}.infill_percent;
   const CLI::Option* modifier_infill_option = nullptr;
   std::string modifier_pattern;
+  bool support_blockers = false;
   std::string spheres;
   std::optional<double> max_triangles;
   std::string surface = "auto";

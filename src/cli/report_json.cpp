@@ -392,6 +392,14 @@ Json target_of(const HollowReport& report) {
           {"most_saving_percent", percent(target.all_removed)}};
 }
 
+Json blockers_of(const HollowReport& report) {
+  if (report.support_blockers == nullptr) return nullptr;
+  return {{"flavor", report.support_blockers->modifiers->flavor},
+          {"count", report.output.void_count},
+          {"triangles", blocker_triangles(report)},
+          {"growth_mm", report.blocker_growth}};
+}
+
 Json stand_of(const HollowReport& report) {
   if (!report.stand) return nullptr;
   const StandFacts& stand = *report.stand;
@@ -422,7 +430,7 @@ std::string to_json(const HollowReport& report) {
                      {"outer_deviation_mm", or_null(report.outer_deviation)}};
   json["output"] = {{"path", report.output_path.string()},
                     {"bytes", report.output_bytes},
-                    {"triangles", output.triangle_count},
+                    {"triangles", output.triangle_count + blocker_triangles(report)},
                     {"outer_triangles", output.outer_triangle_count},
                     {"void_triangles", output.void_triangle_count}};
   json["voids"] = {{"shape", report.cells ? "cells" : "spheres"},
@@ -444,6 +452,7 @@ std::string to_json(const HollowReport& report) {
   if (report.drainage) add_plugs(json["drainage"], report.plugs);
   json["volume"] = volume_of(report);
   json["modifiers"] = modifiers_of(report);
+  json["support_blockers"] = blockers_of(report);
   json["centre_of_mass"] = {
       {"before_mm", json_of(output.centre_of_mass_before)},
       {"after_mm", report.modifiers ? Json(nullptr) : json_of(output.centre_of_mass_after)}};

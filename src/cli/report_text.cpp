@@ -319,6 +319,18 @@ void add_volume(Lines& lines, const HollowReport& report) {
             output.volume_before, percent, output.volume_after, estimated);
 }
 
+// What keeps a slicer's supports out of voids.
+void add_supports(Lines& lines, const HollowReport& report) {
+  if (report.support_blockers != nullptr) {
+    lines.add("supports", "{} for {}, larger than the voids by {:.2g} mm; other programs show them as bodies",
+              count_of(report.output.void_count, "support blocker", "support blockers"),
+              listed(report.support_blockers->family, "and"), report.blocker_growth);
+  } else if (may_be_filled_with_supports(report)) {
+    lines.add("supports", "in the slicer: on the build plate only, or they fill voids (or a 3MF with {})",
+              "--support-blockers");
+  }
+}
+
 void add_target(Lines& lines, const HollowReport& report) {
   if (!report.target) return;
   const TargetFacts& target = *report.target;
@@ -473,9 +485,13 @@ std::string to_text(const HollowReport& report) {
   add_plugs(lines, report.plugs);
   if (!report.modifiers) add_balance(lines, report);
   add_material(lines, report);
-  lines.add("output", "{}: {} ({} outside, {}), {}", report.output_path.filename().string(),
-            count_of(output.triangle_count, "triangle", "triangles"), grouped(output.outer_triangle_count),
+  add_supports(lines, report);
+  const std::size_t in_blockers = blocker_triangles(report);
+  lines.add("output", "{}: {} ({} outside, {}{}), {}", report.output_path.filename().string(),
+            count_of(output.triangle_count + in_blockers, "triangle", "triangles"),
+            grouped(output.outer_triangle_count),
             report.surface == OuterSurface::kept ? "kept as they were" : "remeshed",
+            in_blockers > 0 ? fmt::format("; {} of support blockers", grouped(in_blockers)) : "",
             format_bytes(static_cast<double>(report.output_bytes)));
   if (report.voxel_size && report.outer_deviation) {
     lines.add("remeshed", "voxels of {:.3g} mm, at most {:.3g} mm from the model's surface",

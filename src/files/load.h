@@ -38,14 +38,16 @@ struct VolumeList {
   std::optional<std::string> (*other_kind)(const pugi::xml_node& volume);
   bool (*is_modifier)(const pugi::xml_node& volume);
   VolumeTriangles (*triangles)(const pugi::xml_node& volume);
+  // Whether it is such a volume as this program adds to a model, so that the model is as it was without it.
+  bool (*is_own)(const pugi::xml_node& volume);
 };
 
 struct LoadOptions {
   // For formats that carry no unit; 3MF and glTF files have their own and refuse another.
   std::optional<LengthUnit> unit;
   Vec3d scale{1, 1, 1};  // on top of the unit, along the axes of what is loaded; finite and positive
-  // A package that has one of these with a volume that is not part of the model is refused, unless that is a modifier
-  // of one of these names: such are read apart.
+  // A package that has one of these with a volume that is not part of the model is refused, unless this program added that
+  // itself (it is left out), or it is a modifier of one of these names: such are read apart.
   std::vector<VolumeList> volume_lists = {};
   std::vector<std::string> wanted_modifiers = {};
 };

@@ -183,7 +183,8 @@ std::vector<OtherVolume> ThreeMfPackage::other_volumes(const std::vector<VolumeL
         if (!kind) continue;
         others.push_back(
             {*kind, volume.find_child_by_attribute("metadata", "key", "name").attribute("value").as_string(),
-             list.is_modifier(volume), object.attribute("id").as_uint(), list.triangles(volume)});
+             list.is_modifier(volume), list.is_own(volume), object.attribute("id").as_uint(),
+             list.triangles(volume)});
       }
     }
   }

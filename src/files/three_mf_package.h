@@ -21,6 +21,7 @@ namespace aerate {
 struct OtherVolume {
   std::string kind, name;
   bool is_modifier = false;
+  bool is_own = false;       // see VolumeList
   std::uint32_t object = 0;  // that it belongs to
   VolumeTriangles triangles;
 };

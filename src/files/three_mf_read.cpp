@@ -38,7 +38,7 @@ class Reader3mf {
   explicit Reader3mf(const InputFile& file) : file_(file), package_(file), model_(package_.model()) {}
 
   LoadedModel build(const LoadOptions& options) {
-    take_modifiers(options);
+    take_volumes_apart(options);
     const ModelPart& model = part({});
     const Vec3d factor = millimetres_per_unit(options, model.unit, file_.name);
     require_something_to_print(model);
@@ -130,10 +130,15 @@ class Reader3mf {
     return extents_[found.object] = all;
   }
 
-  // Of the volumes that are not part of the model only modifiers that were asked for may be there.
-  void take_modifiers(const LoadOptions& options) {
+  // Of the volumes that are not part of the model only those that this program adds and modifiers that were asked for
+  // may be there.
+  void take_volumes_apart(const LoadOptions& options) {
     std::vector<std::string> unwanted;
     for (OtherVolume& volume : package_.other_volumes(options.volume_lists)) {
+      if (volume.is_own) {
+        volumes_apart_.push_back(std::move(volume));
+        continue;
+      }
       const bool is_wanted = volume.is_modifier && std::ranges::find(options.wanted_modifiers, volume.name) !=
                                                        options.wanted_modifiers.end();
       if (!is_wanted) {
@@ -141,7 +146,7 @@ class Reader3mf {
         continue;
       }
       modifier_welders_.try_emplace(volume.name, 0);
-      modifiers_.push_back(std::move(volume));
+      volumes_apart_.push_back(std::move(volume));
     }
     if (unwanted.empty()) return;
     throw InputError(
@@ -153,12 +158,12 @@ class Reader3mf {
         "modifiers that 'aerate hollow' is to keep solid may stay, with --keep-solid NAME for each");
   }
 
-  // The modifier that a triangle of an object, or one of its components, belongs to.
+  // Where a triangle of an object, or one of its components, goes that is not of the model.
   template <typename Belongs>
-  Welder* modifier_at(std::uint32_t object, const Belongs& belongs) {
-    for (const OtherVolume& volume : modifiers_)
+  Welder* welder_apart(std::uint32_t object, const Belongs& belongs) {
+    for (const OtherVolume& volume : volumes_apart_)
       if (volume.object == object && belongs(volume.triangles))
-        return &modifier_welders_.find(volume.name)->second;
+        return volume.is_own ? &left_out_triangles_ : &modifier_welders_.find(volume.name)->second;
     return nullptr;
   }
 
@@ -166,23 +171,24 @@ class Reader3mf {
   void add_item(const Found& found, const Affine& transform, Vec3d factor, Welder& welder,
                 LoadedModel& loaded) {
     const ModelObject& object = *found.object;
-    if (modifiers_.empty() || !is_model(object)) return add_object(found, transform, factor, welder, loaded);
+    if (volumes_apart_.empty() || !is_model(object))
+      return add_object(found, transform, factor, welder, loaded);
     for (const ObjectReference& component : object.components) {
-      Welder* const modifier =
-          modifier_at(object.id, [&](const VolumeTriangles& t) { return t.component == component.id; });
+      Welder* const apart =
+          welder_apart(object.id, [&](const VolumeTriangles& t) { return t.component == component.id; });
       const std::size_t parts = loaded.part_count;
       add_object(find(*found.path, component), transform * component.transform, factor,
-                 modifier != nullptr ? *modifier : welder, loaded);
-      if (modifier != nullptr) loaded.part_count = parts;
+                 apart != nullptr ? *apart : welder, loaded);
+      if (apart != nullptr) loaded.part_count = parts;
     }
     if (!object.components.empty()) return;
     ++loaded.part_count;
     const std::vector<Vec3f>& p = object.mesh.positions;
     for (std::size_t i = 0; i < object.mesh.triangles.size(); ++i) {
-      Welder* const modifier = modifier_at(
+      Welder* const apart = welder_apart(
           object.id, [&](const VolumeTriangles& t) { return !t.component && i >= t.first && i <= t.last; });
       const auto& [a, b, c] = object.mesh.triangles[i];
-      PartWriter(modifier != nullptr ? *modifier : welder, transform, factor, file_.name)
+      PartWriter(apart != nullptr ? *apart : welder, transform, factor, file_.name)
           .add_triangle(p[a], p[b], p[c]);
     }
   }
@@ -229,6 +235,9 @@ class Reader3mf {
       said.push_back(fmt::format("object {} is of type '{}', no part of the model, and left out{}", id, type,
                                  others(left_out_.size())));
     }
+    for (const OtherVolume& volume : volumes_apart_)
+      if (volume.is_own)
+        said.push_back(fmt::format("'{}' is no part of the model, and left out", volume.name));
     if (!empty_.empty())
       said.push_back(fmt::format("object {} has no triangles{}", *empty_.begin(), others(empty_.size())));
     return said;
@@ -243,7 +252,8 @@ class Reader3mf {
   std::set<const ModelObject*> open_;  // whose components are being looked at
   std::set<std::pair<std::string, std::uint32_t>> left_out_;
   std::set<std::uint32_t> empty_;
-  std::vector<OtherVolume> modifiers_;              // that were asked for
+  std::vector<OtherVolume> volumes_apart_;  // those that are left out, and modifiers that were asked for
+  Welder left_out_triangles_{0};            // of the former
   std::map<std::string, Welder> modifier_welders_;  // by their names
 };
 

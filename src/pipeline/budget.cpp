@@ -44,11 +44,14 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
   require(need.bytes, need.job, need.hint);
 }
 
-void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles) {
+void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles,
+                              std::size_t copies) {
   const CarveOptions options{.tolerance = tolerance};
-  if (bytes_of_result(most_void_triangles(packing, options), outer_triangles) <= available_memory_bytes())
+  const auto times = static_cast<double>(copies);
+  if (bytes_of_result(times * most_void_triangles(packing, options), outer_triangles) <=
+      available_memory_bytes())
     return;
-  const std::size_t in_voids = estimate_void_triangles(packing, options);
+  const std::size_t in_voids = copies * estimate_void_triangles(packing, options);
   require(bytes_of_result(static_cast<double>(in_voids), outer_triangles),
           fmt::format("a result of {} triangles ({})", outer_triangles + in_voids,
                       counted(packing.spheres.size(), "void", "voids")),
@@ -77,16 +80,18 @@ void require_memory_for_cells(const Mesh& mesh, const Packing& packing, const Ce
 }
 
 double tolerance_for(const Packing& packing, double asked, std::size_t outer_triangles,
-                     std::optional<std::size_t> max_triangles) {
+                     std::optional<std::size_t> max_triangles, std::size_t copies) {
   if (!max_triangles) return asked;
-  const std::size_t for_voids = *max_triangles > outer_triangles ? *max_triangles - outer_triangles : 0;
+  const std::size_t left = *max_triangles > outer_triangles ? *max_triangles - outer_triangles : 0;
+  const std::size_t for_voids = left / copies;
   const auto loosened = loosen_tolerance(packing, CarveOptions{.tolerance = asked}, for_voids);
   if (!loosened) {
     throw UsageError(
         fmt::format("--max-triangles {}: the model has {} triangles of its own, and {} more than the {} "
-                    "that are left, however coarse",
+                    "that are left{}, however coarse",
                     *max_triangles, outer_triangles,
-                    counted(packing.spheres.size(), "void takes", "voids take"), for_voids),
+                    counted(packing.spheres.size(), "void takes", "voids take"), for_voids,
+                    copies > 1 ? " beside their support blockers" : ""),
         "allow more triangles, or give a larger --min-radius for fewer voids");
   }
   return *loosened;

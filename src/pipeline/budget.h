@@ -19,7 +19,9 @@ void require_memory_for_packing(const Mesh& mesh, const PackingRequest& request)
 
 // The same for what is made of the packing: the void surfaces, the file and its check. `outer_triangles` is
 // the size of the model's own surface.
-void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles);
+//   copies: of each void surface that are written, support blockers among them
+void require_memory_for_voids(const Packing& packing, double tolerance, std::size_t outer_triangles,
+                              std::size_t copies = 1);
 
 // The same for voids that fill cells.
 void require_memory_for_cells(const Mesh& mesh, const Packing& packing, const CellShape& shape);
@@ -27,7 +29,7 @@ void require_memory_for_cells(const Mesh& mesh, const Packing& packing, const Ce
 // The smallest tolerance, but no smaller than `asked`, with which the result has at most `max_triangles`.
 // Throws UsageError if none does. mm.
 double tolerance_for(const Packing& packing, double asked, std::size_t outer_triangles,
-                     std::optional<std::size_t> max_triangles);
+                     std::optional<std::size_t> max_triangles, std::size_t copies = 1);
 
 // Notes that a tolerance is not the one that was asked for, if so. mm.
 void notice_if_loosened(double tolerance, double asked, std::optional<std::size_t> max_triangles,

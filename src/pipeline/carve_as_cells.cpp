@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "pipeline/budget.h"
 #include "pipeline/held_notices.h"
+#include "pipeline/solid_file.h"
 #include "pipeline/sound_cells.h"
 #include "printing/cells/shape_cells.h"
 
@@ -70,7 +71,7 @@ CarvedCells carve_as_cells(const PreparedModel& model, const SurfaceIndex& surfa
     HeldNotices held(monitor);
     try {
       CarvedCells made = carve_at(model, surface, packing, planes, options, tolerance, held);
-      const std::size_t count = made.carved.solid.mesh.triangles.size();
+      const std::size_t count = triangles_written(made.carved.solid, options);
       fewest = std::min(count, fewest.value_or(count));
       if (count > most) continue;
       held.pass_on();

@@ -11,6 +11,7 @@
 #include "pipeline/held_notices.h"
 #include "pipeline/pack.h"
 #include "pipeline/print_prediction.h"
+#include "pipeline/solid_file.h"
 #include "pipeline/worthy_modifiers.h"
 #include "printing/carve.h"
 
@@ -36,9 +37,11 @@ PackingRequest request_of(const HollowOptions& options, Monitor& monitor) {
 // The tolerance at which the voids take no more triangles than are allowed, and no more memory than there is.
 double tolerance_within(const Packing& packing, std::size_t outer_triangles, const HollowOptions& options,
                         Monitor& monitor) {
-  const double tolerance = tolerance_for(packing, options.tolerance, outer_triangles, options.max_triangles);
+  const std::size_t copies = options.support_blockers == nullptr ? 1 : 2;
+  const double tolerance =
+      tolerance_for(packing, options.tolerance, outer_triangles, options.max_triangles, copies);
   notice_if_loosened(tolerance, options.tolerance, options.max_triangles, monitor);
-  require_memory_for_voids(packing, tolerance, outer_triangles);
+  require_memory_for_voids(packing, tolerance, outer_triangles, copies);
   return tolerance;
 }
 
@@ -48,9 +51,10 @@ Solid carve_sealed(const PreparedModel& model, const Packing& packing, double to
   return carve_keeping_surface(model.mesh, packing, options, monitor);
 }
 
-void warn_of_many_triangles(const CarvedModel& carved, std::size_t outer_triangles, Monitor& monitor) {
+void warn_of_many_triangles(const CarvedModel& carved, std::size_t outer_triangles,
+                            const HollowOptions& options, Monitor& monitor) {
   constexpr std::size_t kMany = 1000000;
-  const std::size_t count = carved.solid.mesh.triangles.size();
+  const std::size_t count = triangles_written(carved.solid, options);
   if (count <= kMany || count <= 2 * outer_triangles) return;
   monitor.notice(fmt::format(
       "the result has {} triangles, the model {}: slicers may be slow with it; --max-triangles or a larger "
@@ -67,7 +71,7 @@ CarvedModel carve(const PreparedModel& model, const SurfaceIndex& surface, const
   CarvedModel carved = drained ? carve_within(model, surface, packing, drained->plan, std::move(outer),
                                               tolerance, options.max_triangles, monitor)
                                : CarvedModel{carve_sealed(model, packing, tolerance, monitor), tolerance};
-  warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
+  warn_of_many_triangles(carved, model.mesh.triangles.size(), options, monitor);
   monitor.check_interrupted();
   return carved;
 }
@@ -89,7 +93,7 @@ MadeVoids make_spheres(const PreparedModel& model, const SurfaceIndex& surface, 
 MadeVoids make_cells(const PreparedModel& model, const SurfaceIndex& surface, Packing packing,
                      const HollowOptions& options, Monitor& monitor) {
   auto [cells, drainage, carved] = carve_as_cells(model, surface, packing, options, monitor);
-  warn_of_many_triangles(carved, model.mesh.triangles.size(), monitor);
+  warn_of_many_triangles(carved, model.mesh.triangles.size(), options, monitor);
   return {std::move(packing), std::move(cells), std::move(drainage), std::move(carved)};
 }
 

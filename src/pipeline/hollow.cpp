@@ -91,6 +91,8 @@ HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written
   report.tolerance_used = hollowed.carved.tolerance;
   report.max_triangles = options.max_triangles;
   report.modifiers = options.modifiers;
+  report.support_blockers = options.support_blockers;
+  if (const auto blockers = solid_format_of(options).blockers) report.blocker_growth = blockers->growth;
   report.output_path = options.output;
   report.output_bytes = written.bytes;
   report.output = written.facts;

@@ -218,9 +218,13 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
   write_bytes(original, settings);
   const fs::path& model = request.hollow.model;
   const ProjectFacts facts = facts_of_project(options, slicer);
-  const FormJob job{request,           slicer,
-                    {{settings}},      scratch,
-                    is_project(model), object_name_in(original, facts, slicer, model)};
+  const FormJob job{request,
+                    slicer,
+                    {{settings}},
+                    scratch,
+                    is_project(model),
+                    object_name_in(original, facts, slicer, model),
+                    has_supports_everywhere(*slicer.profile, settings)};
   const Original read(original);
   const SlicedForm solid = slice_solid(job, log);
   log.stage("compare");

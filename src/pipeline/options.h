@@ -133,6 +133,8 @@ struct HollowOptions {
   SurfaceMode surface = SurfaceMode::automatic;
   // If given, voids become modifiers; the output has to be 3MF.
   std::optional<ModifierOptions> modifiers;
+  // If given, one that has a format for support blockers: sealed voids get them; the output has to be 3MF.
+  const SlicerProfile* support_blockers = nullptr;
   // If given, voids are joined by channels and opened by escape holes; else each is sealed.
   std::optional<DrainageRequest> drainage;
   Build build = Build::standing;
@@ -141,7 +143,7 @@ struct HollowOptions {
 
   // Void surfaces deviate from the planned balls by at most this, inwards. Millimetres.
   double tolerance = 0.05;
-  // The tolerance is loosened until the result has at most so many triangles.
+  // The tolerance is loosened until the result has at most so many triangles, support blockers included.
   std::optional<std::size_t> max_triangles;
   // Edge of the voxels when remeshing, mm; chosen from the limits if not given.
   std::optional<double> voxel_size;

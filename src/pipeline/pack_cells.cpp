@@ -34,7 +34,8 @@ void write_pieces(const PreparedModel& model, const SurfaceIndex& surface, const
                                    .kept = model.kept ? &*model.kept : nullptr},
                                   monitor);
   };
-  write_checked(pieces, file, {.mesh = &format, .modifiers = {}, .object_name = {}}, check, monitor);
+  write_checked(pieces, file, {.mesh = &format, .modifiers = {}, .blockers = {}, .object_name = {}}, check,
+                monitor);
 }
 
 }  // namespace

@@ -34,6 +34,12 @@ bool is_modifiers(PrintForm form) {
   return form == PrintForm::modifiers || form == PrintForm::lightning_modifiers;
 }
 
+// Whether voids get support blockers.
+bool blocks_supports(PrintForm form, const FormJob& job) {
+  const auto& format = job.slicer.profile->modifiers;
+  return form == PrintForm::voids && job.supports_everywhere && format && format->has_blockers;
+}
+
 // What a slicer would call the model as STL.
 std::string usual_name(const FormJob& job) {
   return job.request.hollow.model.stem().string() + ".stl";
@@ -54,7 +60,7 @@ bool keeps_names(const FormJob& job) {
 std::filesystem::path model_file(PrintForm form, const FormJob& job) {
   std::string name = usual_name(job);
   const std::string stem = job.request.hollow.model.stem().string();
-  if (is_modifiers(form)) {
+  if (is_modifiers(form) || blocks_supports(form, job)) {
     name = stem + job.slicer.profile->modifiers->ending;
   } else if (keeps_names(job) && object_name(job) != name) {
     name = stem + ".3mf";
@@ -172,6 +178,18 @@ bool is_hopeless(const PrintPrediction& print) {
   return change > uncertain;
 }
 
+// What keeps supports out of voids, where they are built everywhere.
+void tell_of_supports(const FormJob& job, Monitor& monitor) {
+  if (!job.supports_everywhere) return;
+  const SlicerProfile& slicer = *job.slicer.profile;
+  if (blocks_supports(PrintForm::voids, job)) {
+    monitor.notice("supports would be built in voids too: support blockers keep them out");
+  } else {
+    monitor.notice(fmt::format("supports are built in voids too, and stay there: {} keeps them out ({})",
+                               slicer.supports_on_plate, slicer.name));
+  }
+}
+
 // Passes each text on once, though the model is looked at for each form.
 class EachNoticeOnce {
  public:
@@ -251,6 +269,10 @@ std::optional<DescribedPrint> described_print(const SlicerProfile& slicer,
   return slicer.described_print(read_text(gcode));
 }
 
+bool has_supports_everywhere(const SlicerProfile& slicer, const std::filesystem::path& gcode) {
+  return slicer.supports_everywhere != nullptr && slicer.supports_everywhere(read_text(gcode));
+}
+
 SlicedForm slice_solid(const FormJob& job, Monitor& monitor) {
   std::filesystem::path model = model_file(PrintForm::solid, job);
   write_solid_model(job, model, monitor);
@@ -286,6 +308,7 @@ TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& jo
     for (HollowOptions& options : ways) {
       options.output = model_file(form, job);
       options.object_name = name_in_3mf(job);
+      if (blocks_supports(form, job)) options.support_blockers = job.slicer.profile;
     }
     HeldNotices held(monitor);
     try {
@@ -297,6 +320,7 @@ TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& jo
         continue;
       }
       HollowReport report = write_hollowed(best.hollowed, *best.options, held);
+      if (form == PrintForm::voids) tell_of_supports(job, held);
       notices.pass_on(held);
       tried.sliced.push_back(slice_file(form, best.options->output, job, monitor));
       tried.sliced.back().hollow = std::move(report);

@@ -88,6 +88,7 @@ struct FormJob {
   bool keep_place = false;  // see SliceJob
   // What the slicer is to call the object; after the model's file, as it does of its own, if empty.
   std::string object_name = {};
+  bool supports_everywhere = false;  // the print has them wherever they are wanted, so in voids too
 };
 
 // Whether a model is a slicer's project, or may be one.
@@ -102,6 +103,9 @@ std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const Slicer
 std::optional<DescribedPrint> described_print(const SlicerProfile& slicer,
                                               const std::filesystem::path& gcode);
 
+// Whether a G-code of the slicer says that supports are built wherever they are wanted.
+bool has_supports_everywhere(const SlicerProfile& slicer, const std::filesystem::path& gcode);
+
 // Slices the model as it is. Throws what load_model() and slice() throw.
 SlicedForm slice_solid(const FormJob& job, Monitor& monitor);
 
@@ -112,7 +116,8 @@ TriedForms slice_patterns(const std::vector<SparsePattern>& patterns, const Slic
 
 // Hollows the model for these forms, writes it in each, checked as any output, and slices it. Unless it was asked for, a
 // form is skipped that nothing can be removed for, or that is predicted to take more filament than solid by more than the
-// prediction may be off. Throws what hollow() and slice() throw, NothingToRemoveError if nothing can be removed for any.
+// prediction may be off. Where supports are built everywhere, voids get support blockers, or a notice if the slicer has none.
+// Throws what hollow() and slice() throw, NothingToRemoveError if nothing can be removed for any.
 TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
                           const std::optional<DescribedPrint>& print, Monitor& monitor);
 

@@ -4,6 +4,16 @@
 
 namespace aerate {
 
+std::size_t blocker_triangles(const HollowReport& report) {
+  return report.support_blockers != nullptr ? report.output.void_triangle_count : 0;
+}
+
+// Only prints of filament have a prediction, and only they have supports that are built of layers.
+bool may_be_filled_with_supports(const HollowReport& report) {
+  return report.print && report.output.void_count > 0 && !report.modifiers &&
+         report.support_blockers == nullptr;
+}
+
 const ShareOfBound& blocks_like(const HollowReport& report) {
   return report.cells ? kBlocksWithCells : kBlocksWithSpheres;
 }

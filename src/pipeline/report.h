@@ -69,6 +69,10 @@ struct HollowReport {
   // of mass is then that of the model less the modifiers, not of a print.
   std::optional<ModifierOptions> modifiers;
 
+  // The file has a support blocker for each void, larger than it by so much, for this slicer; null: it has none.
+  const SlicerProfile* support_blockers = nullptr;
+  double blocker_growth = 0;  // mm
+
   std::filesystem::path output_path;
   std::size_t output_bytes = 0;
   OutputFacts output;
@@ -103,6 +107,12 @@ struct MaterialUse {
   double cost_after = 0;
 };
 MaterialUse material_use(const HollowReport& report);
+
+// Triangles of support blockers, each of which is one of a void's.
+std::size_t blocker_triangles(const HollowReport& report);
+
+// Whether supports would fill the voids in a slicer that builds them wherever they are wanted.
+bool may_be_filled_with_supports(const HollowReport& report);
 
 // How stiff blocks with such voids were.
 const ShareOfBound& blocks_like(const HollowReport& report);

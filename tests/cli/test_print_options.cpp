@@ -169,7 +169,8 @@ TEST(PrintOptions, ModifiersWithoutLessInfillAreRefused) {
 
 TEST(PrintOptions, OptionsOfModifiersAreRefusedForVoids) {
   const Job job;
-  expect_refused(job, {"--flavor", "orca"}, kUsage, {"--flavor without --as modifiers has no effect"});
+  expect_refused(job, {"--flavor", "orca"}, kUsage,
+                 {"--flavor without --as modifiers or --support-blockers has no effect"});
   expect_refused(job, {"--as", "voids", "--modifier-infill", "5"}, kUsage,
                  {"--modifier-infill without --as modifiers has no effect"});
   const ProcessResult sliced =

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "files/three_mf.h"
 #include "printing/slicers/slicers.h"
+#include "printing/slicers/support_blockers.h"
 #include "tests/support/caught.h"
 #include "tests/support/files.h"
 #include "tests/support/shapes.h"
@@ -95,6 +96,33 @@ TEST_F(ModifiersIn3mf, FilesThatAreCutOffAreNoticed) {
         contains(message_of<FailureError>([&] { slicer.modifiers->read_mesh(cut); }), "that was written"));
     EXPECT_TRUE(contains(message_of<FailureError>([&] { slicer.modifiers->read(cut); }), "that was written"));
   }
+}
+
+TEST_F(ModifiersIn3mf, SupportBlockersAreNamedAndKnownAgain) {
+  const Solid solid = box_with_a_void();
+  const std::vector<ObjectPart> parts = blocker_parts(solid);
+  std::size_t count = 0;
+  for (const SlicerProfile& slicer : those_that_take_them()) {
+    if (!slicer.modifiers->has_blockers) continue;
+    ++count;
+    SCOPED_TRACE(slicer.name);
+    const auto path =
+        file(slicer.modifiers->file(with_support_blockers(solid, 0.4), parts.front(), parts.back(), "part"));
+    EXPECT_EQ(slicer.modifiers->read(path), parts);
+    EXPECT_NE(slicer.modifiers->read(path), modifier_parts(solid, 0));
+    const LoadedModel loaded = load_model(path, {.unit = {}, .volume_lists = volume_lists()});
+    EXPECT_EQ(signed_volume(loaded.mesh), 8000 - 64);
+    EXPECT_EQ(loaded.part_count, 1u);
+    // Those of somebody else stay what is no part of the model.
+    ObjectPart other = parts.back();
+    other.name = "mine";
+    const auto others =
+        file(slicer.modifiers->file(with_support_blockers(solid, 0.4), parts.front(), other, "part"));
+    EXPECT_TRUE(contains(
+        message_of<InputError>([&] { load_model(others, {.unit = {}, .volume_lists = volume_lists()}); }),
+        "'mine'"));
+  }
+  EXPECT_EQ(count, 2u);
 }
 
 TEST_F(ModifiersIn3mf, AreBodiesOfTheirOwn) {
