@@ -73,13 +73,14 @@ struct Candidate {
 
 class CavityPlaces {
  public:
-  CavityPlaces(const DrainableModel& model, const DrainageRequest& request, const PackingLimits& limits)
+  // `clearance`: of the model alone.
+  CavityPlaces(const DrainableModel& model, const TubeClearance& clearance, const DrainageRequest& request,
+               const PackingLimits& limits)
       : model_(model),
         request_(request),
         limits_(limits),
-        nothing_packed_{{}, limits, {}, {}},
-        clearance_(model.surface, nothing_packed_, 0, request.hole_radius, model.kept),
-        showing_(clearance_, limits.roof.up, model.plate, request) {}
+        clearance_(clearance),
+        showing_(clearance, limits.roof.up, model.plate, request) {}
 
   // All tubes that lead out as they should at both ends, in no order.
   std::vector<Candidate> candidates(const std::vector<SurfacePoint>& points, Vec3d down,
@@ -173,8 +174,7 @@ class CavityPlaces {
   const DrainableModel& model_;
   const DrainageRequest& request_;
   const PackingLimits& limits_;
-  Packing nothing_packed_;
-  TubeClearance clearance_;
+  const TubeClearance& clearance_;
   HoleShowing showing_;
 };
 
@@ -185,7 +185,9 @@ std::optional<CavityHole> find_cavity_hole(const Mesh& mesh, const DrainableMode
                                            const DrainageRequest& request, const PackingLimits& limits,
                                            Vec3d down, std::span<const CavityHole> others,
                                            const CanCutThrough& can_cut) {
-  const CavityPlaces places(model, request, limits);
+  const TubeClearance clearance(model.surface, Packing{{}, limits, {}, {}}, 0, request.hole_radius,
+                                model.kept);
+  const CavityPlaces places(model, clearance, request, limits);
   const std::vector<SurfacePoint> points = spread_over(mesh, cavity);
   double lowest = kInfinity, highest = -kInfinity;
   for (const SurfacePoint& point : points) {
