@@ -224,13 +224,13 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
                     scratch,
                     is_project(model),
                     object_name_in(original, facts, slicer, model),
-                    has_supports_everywhere(*slicer.profile, settings)};
+                    has_supports_everywhere(*slicer.profile, original)};
   const Original read(original);
   const SlicedForm solid = slice_solid(job, log);
   log.stage("compare");
   require_match(read, solid, slicer, report.origin, options);
   report.forms.front().slicer_seconds = solid.slicer_seconds;
-  report.print = described_print(*slicer.profile, options.gcode);
+  report.print = described_print(*slicer.profile, original);
   std::vector<std::string> losses;
   try {
     TriedForms tried = slice_hollowed(hollowed, job, report.print, log);

@@ -169,10 +169,10 @@ double predicted_change(const PrintPrediction& print) {
 
 // Whether more filament is predicted by more than the prediction may be off (docs/economics.md).
 bool is_hopeless(const PrintPrediction& print) {
-  constexpr double kUncertain = 0.015, kUncertainShare = 0.1;
+  constexpr double kUncertainOfChange = 0.1;
   constexpr double kWithOneWall = 0.04, kWithoutWalls = 0.09;
   const double change = predicted_change(print);
-  double uncertain = std::max(kUncertain, kUncertainShare * std::abs(change));
+  double uncertain = std::max(kUncertainShare, kUncertainOfChange * std::abs(change));
   if (print.settings.perimeters < 2)
     uncertain = std::max(uncertain, print.settings.perimeters == 1 ? kWithOneWall : kWithoutWalls);
   return change > uncertain;
@@ -203,6 +203,21 @@ class EachNoticeOnce {
   Monitor& monitor_;
   std::set<std::string> said_;
 };
+
+// The form that takes the least filament of those that are candidates, or the first, which is solid.
+template <typename IsCandidate>
+std::size_t lightest_of(const std::vector<SlicedForm>& forms, const IsCandidate& is_candidate) {
+  std::size_t lightest = 0;
+  double most_saved = 0;
+  for (std::size_t i = 1; i < forms.size(); ++i) {
+    if (!is_candidate(forms[i])) continue;
+    const double saved = filament_saved(forms[0].figures, forms[i].figures);
+    if (saved <= most_saved) continue;
+    most_saved = saved;
+    lightest = i;
+  }
+  return lightest;
+}
 
 }  // namespace
 
@@ -263,14 +278,13 @@ std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const Slicer
   return forms;
 }
 
-std::optional<DescribedPrint> described_print(const SlicerProfile& slicer,
-                                              const std::filesystem::path& gcode) {
+std::optional<DescribedPrint> described_print(const SlicerProfile& slicer, std::string_view gcode) {
   if (slicer.described_print == nullptr) return std::nullopt;
-  return slicer.described_print(read_text(gcode));
+  return slicer.described_print(gcode);
 }
 
-bool has_supports_everywhere(const SlicerProfile& slicer, const std::filesystem::path& gcode) {
-  return slicer.supports_everywhere != nullptr && slicer.supports_everywhere(read_text(gcode));
+bool has_supports_everywhere(const SlicerProfile& slicer, std::string_view gcode) {
+  return slicer.supports_everywhere != nullptr && slicer.supports_everywhere(gcode);
 }
 
 SlicedForm slice_solid(const FormJob& job, Monitor& monitor) {
@@ -345,28 +359,11 @@ double filament_saved(const GcodeFigures& solid, const GcodeFigures& other) {
 
 std::size_t choose_form(const std::vector<SlicedForm>& forms, std::optional<PrintForm> asked) {
   if (asked) return 1;
-  std::size_t best = 0;
-  double most_saved = 0;
-  for (std::size_t i = 1; i < forms.size(); ++i) {
-    if (forms[i].form == PrintForm::pattern) continue;
-    const double saved = filament_saved(forms[0].figures, forms[i].figures);
-    if (saved <= most_saved) continue;
-    most_saved = saved;
-    best = i;
-  }
-  return best;
+  return lightest_of(forms, [](const SlicedForm& form) { return form.form != PrintForm::pattern; });
 }
 
 std::size_t lightest_form(const std::vector<SlicedForm>& forms) {
-  std::size_t lightest = 0;
-  double most_saved = 0;
-  for (std::size_t i = 1; i < forms.size(); ++i) {
-    const double saved = filament_saved(forms[0].figures, forms[i].figures);
-    if (saved <= most_saved) continue;
-    most_saved = saved;
-    lightest = i;
-  }
-  return lightest;
+  return lightest_of(forms, [](const SlicedForm&) { return true; });
 }
 
 }  // namespace aerate

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/monitor.h"
@@ -100,11 +101,10 @@ std::vector<PrintForm> forms_to_try(std::optional<PrintForm> asked, const Slicer
                                     bool with_lightning = false);
 
 // What the print is, as far as a G-code of the slicer says.
-std::optional<DescribedPrint> described_print(const SlicerProfile& slicer,
-                                              const std::filesystem::path& gcode);
+std::optional<DescribedPrint> described_print(const SlicerProfile& slicer, std::string_view gcode);
 
 // Whether a G-code of the slicer says that supports are built wherever they are wanted.
-bool has_supports_everywhere(const SlicerProfile& slicer, const std::filesystem::path& gcode);
+bool has_supports_everywhere(const SlicerProfile& slicer, std::string_view gcode);
 
 // Slices the model as it is. Throws what load_model() and slice() throw.
 SlicedForm slice_solid(const FormJob& job, Monitor& monitor);

@@ -175,8 +175,11 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   FormJob job{request, report.slicer, settings_with_project(options, scratch.path(), log), scratch.path()};
   report.forms.push_back(slice_solid(job, log));
   // What the print is decides what is worth slicing.
-  report.print = described_print(*options.slicer, report.forms.front().gcode);
-  job.supports_everywhere = has_supports_everywhere(*options.slicer, report.forms.front().gcode);
+  {
+    const std::string solid = read_text(report.forms.front().gcode);
+    report.print = described_print(*options.slicer, solid);
+    job.supports_everywhere = has_supports_everywhere(*options.slicer, solid);
+  }
   slice_what_can_be_sparse(patterns, job, report, log);
   const std::size_t unhollowed = report.forms.size(), skipped = report.skipped.size();
   if (!hollowed.empty()) slice_what_can_be_hollowed(hollowed, job, report, log);

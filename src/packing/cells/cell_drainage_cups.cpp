@@ -101,12 +101,15 @@ CellDraft with_lower_windows(CellDrainageTask& task, CellDraft draft, double lim
     if (excess_of(cups_of(task, lower), limit) >= before - kLeastArea) break;
     draft = std::move(lower);
   }
+  double with_all = excess_of(cups_of(task, draft), limit);
   for (std::size_t i = draft.windows.size(); i-- > first;) {
     task.monitor.check_interrupted();
     CellDraft fewer = draft;
     fewer.windows.erase(fewer.windows.begin() + static_cast<std::ptrdiff_t>(i));
-    if (excess_of(cups_of(task, fewer), limit) <= excess_of(cups_of(task, draft), limit) + kLeastArea)
-      draft = std::move(fewer);
+    const double without_one = excess_of(cups_of(task, fewer), limit);
+    if (without_one > with_all + kLeastArea) continue;
+    draft = std::move(fewer);
+    with_all = without_one;
   }
   return draft;
 }
