@@ -15,6 +15,7 @@ enum class Limit {
   gap,             // least thickness between two voids
   min_radius,      // smaller voids are not made
   max_radius,      // of the largest voids
+  cell_size,       // about how far inner walls between cells are apart
   least_wall,      // a thinner wall cannot be printed at all
   least_gap,       // nor can a thinner gap
   overhang,        // a ceiling flatter than this needs support...
@@ -25,11 +26,12 @@ enum class Limit {
   plug_clearance,  // between a plug, where it is widest, and its hole all round
   plug_taper,      // by which its side leans away from the hole's
 };
-inline constexpr std::size_t kLimitCount = 13;
+inline constexpr std::size_t kLimitCount = 14;
 
 // When a job is under a limit.
 enum class LimitGroup {
   packing,   // always; every process has these
+  cells,     // where voids are cells and nothing else says how large; they become the largest radius
   printer,   // never: walls, gaps and cups are held against it
   ceilings,  // where the process or the user gives both of these
   drainage,  // where voids drain

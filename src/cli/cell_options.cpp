@@ -1,13 +1,32 @@
 #include "cli/cell_options.h"
 
 #include <fmt/format.h>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/numbers.h"
 #include "core/error.h"
+#include "core/listed.h"
 #include "pipeline/process_choice.h"
+#include "printing/processes.h"
 
 namespace aerate::cli {
+namespace {
+
+// "33 for sla and sls"
+std::string sizes_of_processes() {
+  std::map<double, std::vector<std::string>> names;
+  for (const Process& process : processes())
+    if (const auto size = process.limits.find(Limit::cell_size); size != process.limits.end())
+      names[size->second.value].push_back(process.name);
+  std::vector<std::string> sizes;
+  for (const auto& [size, of] : names) sizes.push_back(fmt::format("{:g} for {}", size, listed(of, "and")));
+  return listed(sizes, "and");
+}
+
+}  // namespace
 
 bool may_be_cells(const PackingRequest& request) {
   return !request.method->on_lattice && request.spheres.empty() && request.stop.target_density >= 1;
@@ -18,9 +37,12 @@ CellCommandOptions::CellCommandOptions(CLI::App& command, const CellWords& words
       ->check(CLI::IsMember({"spheres", "cells"}))
       ->type_name("SHAPE");
   command
-      .add_option("--cell-size", cell_size_,
-                  "Cells: about how far inner walls are apart (default 21, or what --max-radius gives); "
-                  "--min-radius is by default half of the largest that fits")
+      .add_option(
+          "--cell-size", cell_size_,
+          fmt::format("Cells: about how far inner walls are apart (default of the process, 21 where it "
+                      "has none, or what --max-radius gives; {}); --min-radius is by default half of "
+                      "the largest that fits",
+                      sizes_of_processes()))
       ->check(number_between({}, kLongest, "mm"))
       ->type_name("MM");
   command

@@ -301,42 +301,49 @@ struct HollowCommand {
     return holding_lightning(std::move(options), is_said ? modifier_infill : kLightningInfill);
   }
 
-  // The preferred one first. Unless it was said what voids are, there is another where it can be told which is better.
-  std::vector<HollowOptions> forms() const {
+  // The preferred one first. Unless it was said what voids are, there are others where it can be told which is better.
+  std::vector<JobForm> forms() const {
     const HollowOptions options = unshaped();
     const std::optional<bool> asked = cells.asks_for_cells();
     const bool makes_cells = asked.value_or(is_cells_unasked(options));
-    std::vector<HollowOptions> forms{shaped(options, makes_cells)};
+    std::vector<JobForm> forms{{shaped(options, makes_cells)}};
     const bool can_compare =
         (options.drainage || options.infill_is_known) && !options.target && !options.stand;
     if (cells.says_how_cells_are() || !can_compare || !may_be_cells(options.packing)) return forms;
     const ProcessChoice& limits = options.packing.process;
-    const bool is_sized = !is_default(limits, Limit::min_radius) || !is_default(limits, Limit::max_radius) ||
-                          options.packing.stop.max_count != PackingStop{}.max_count;
-    if (!is_sized) add_larger_cells(forms);
+    const bool is_bounded =
+        !is_default(limits, Limit::max_radius) || options.packing.stop.max_count != PackingStop{}.max_count;
+    const bool is_sized = is_bounded || !is_default(limits, Limit::min_radius);
+    if (!is_sized) add_other_sizes(forms);
     // More freedom is not to remove less.
-    if (const auto usual = with_usual_limits(options.packing.process); usual && options.drainage) {
+    if (const auto usual = with_usual_limits(limits, makes_cells); usual && options.drainage) {
       HollowOptions within = options;
       within.packing.process = *usual;
-      forms.push_back(shaped(std::move(within), makes_cells));
+      forms.push_back({shaped(std::move(within), makes_cells)});
+      if (!is_bounded) add_other_sizes(forms);
     }
     if (asked) return forms;
     try {
-      forms.push_back(shaped(options, !makes_cells));
-      if (!is_sized) add_larger_cells(forms);
+      forms.push_back({shaped(options, !makes_cells), FormTrial::for_more_volume});
+      if (!is_sized) add_other_sizes(forms);
     } catch (const UsageError&) {
       // These options leave no choice.
     }
     return forms;
   }
 
-  // After cells that drain: cells twice as large.
-  static void add_larger_cells(std::vector<HollowOptions>& forms) {
-    const HollowOptions& last = forms.back();
-    if (!last.cells || !last.drainage) return;
-    HollowOptions larger = last;
+  // After cells that drain: cells twice as large, one for each region of the model, and smaller ones.
+  static void add_other_sizes(std::vector<JobForm>& forms) {
+    const HollowOptions usual = forms.back().options;
+    if (!usual.cells || !usual.drainage) return;
+    HollowOptions& larger = forms.emplace_back(usual, FormTrial::for_fewer_holes).options;
     larger.packing.process = with_larger_cells(std::move(larger.packing.process));
-    forms.push_back(std::move(larger));
+    HollowOptions& single = forms.emplace_back(usual, FormTrial::for_fewer_holes).options;
+    single.packing.stop.max_count = 1;
+    if (auto process = with_smaller_cells(usual.packing.process)) {
+      HollowOptions& smaller = forms.emplace_back(usual, FormTrial::for_more_volume).options;
+      smaller.packing.process = *std::move(process);
+    }
   }
 
   // Whether voids are cells, if --shape does not say.
@@ -349,7 +356,7 @@ struct HollowCommand {
   }
 
   void run() const {
-    const std::vector<HollowOptions> options = forms();
+    const std::vector<JobForm> options = forms();
     JobFiles files{packing.inputs(model.path), {output}};
     for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
     files.inputs.push_back({"list of spheres", spheres});

@@ -17,12 +17,27 @@ struct HollowedForm {
   std::optional<PrintPrediction> print;
 };
 
+// When a form is made beside those before it. If none of these could be made, or the best of them leaves out much of what
+// was packed, or filament decides, each is.
+enum class FormTrial {
+  always,
+  for_fewer_holes,  // if the form before it has several groups of voids, or takes more than two holes for pools
+  for_more_volume,  // else not
+};
+
+// One way of doing a job.
+struct JobForm {
+  HollowOptions options;
+  FormTrial tried = FormTrial::always;
+};
+
 // Of the forms that the same job may take, the best. `forms`: at least one, the preferred one first; they read one model
-// and write one file. Where the print is described, that which takes the least filament. Else the first, unless it
-// cannot be made or leaves out much of what was packed; the others are then made as well, and that which removes most
-// is taken, an escape hole being worth half a percent of it. Larger cells are made too where those of the first are several
-// groups, each with two holes of its own. Of what was compared a notice has the figures. Throws what carve_model and
-// predict_print throw for the first form if none can be made.
-HollowedForm carve_best_form(std::span<const HollowOptions> forms, Monitor& monitor);
+// and write one file. Where the print is described, that which takes the least filament. Else that which removes most of
+// those that are tried, an escape hole being worth half a percent of it; the first where that makes no difference. Limits of
+// another form that is always tried are no reason to remove less. Of what
+// was compared a notice has the figures. Throws what carve_model and predict_print throw for the first form if none can be
+// made.
+//   models: of the job; those that were prepared for another form are not prepared again
+HollowedForm carve_best_form(std::span<const JobForm> forms, PreparedModels& models, Monitor& monitor);
 
 }  // namespace aerate

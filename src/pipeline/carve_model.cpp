@@ -114,9 +114,10 @@ MakeSome maker_of_some(const PreparedModel& model, const SurfaceIndex& surface, 
   };
 }
 
-HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
+HollowedModel carve_once(const HollowOptions& options, PreparedModels& models, Monitor& monitor) {
   PackingRequest request = request_of(options, monitor);
-  PreparedModel model = prepare_model(options, monitor);
+  std::shared_ptr<const PreparedModel> prepared = models.get(options, monitor);
+  const PreparedModel& model = *prepared;
   request = sized_for(model, std::move(request), monitor);
   auto [packing, surface] = pack_model(model, request, monitor);
   if (options.cells) packing.limits = request.limits();
@@ -140,7 +141,7 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
                     stand.emplace(), monitor);
   }
   return {std::move(request),
-          std::move(model),
+          std::move(prepared),
           std::move(surface),
           std::move(made.packing),
           std::move(made.cells),
@@ -153,12 +154,12 @@ HollowedModel carve_once(const HollowOptions& options, Monitor& monitor) {
 }  // namespace
 
 // Voxels that were not asked for become finer until they hold the voids.
-HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
+HollowedModel carve_model(const HollowOptions& options, PreparedModels& models, Monitor& monitor) {
   constexpr int kMostTries = 4;
   HollowOptions tried = options;
   for (int tries = 1;; ++tries) {
     try {
-      return carve_once(tried, monitor);
+      return carve_once(tried, models, monitor);
     } catch (const VoxelsTooCoarse& error) {
       if (options.voxel_size || tries == kMostTries) throw;
       tried.voxel_size = error.fine_enough();
@@ -167,12 +168,13 @@ HollowedModel carve_model(const HollowOptions& options, Monitor& monitor) {
   }
 }
 
-std::optional<HollowedModel> open_without_voids(const HollowOptions& options, Monitor& monitor) {
+std::optional<HollowedModel> open_without_voids(const HollowOptions& options, PreparedModels& models,
+                                                Monitor& monitor) {
   if (!options.opens_cavities) return std::nullopt;
-  PreparedModel model = prepare_model(options, monitor);
-  if (model.opened->cavities.empty()) return std::nullopt;
-  SurfaceIndex surface(model.mesh);
-  Solid solid{model.mesh, {}};
+  std::shared_ptr<const PreparedModel> model = models.get(options, monitor);
+  if (model->opened->cavities.empty()) return std::nullopt;
+  SurfaceIndex surface(model->mesh);
+  Solid solid{model->mesh, {}};
   solid.close_part(PartKind::outer);
   return HollowedModel{options.packing,
                        std::move(model),

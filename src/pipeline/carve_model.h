@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "core/cells.h"
@@ -9,6 +10,7 @@
 #include "pipeline/drain.h"
 #include "pipeline/options.h"
 #include "pipeline/prepare.h"
+#include "pipeline/prepared_models.h"
 #include "pipeline/stand.h"
 #include "pipeline/target.h"
 
@@ -17,7 +19,7 @@ namespace aerate {
 // A model with its voids, ready to be written in one form or several.
 struct HollowedModel {
   PackingRequest request;  // what was packed: without voids that would cost more than they save
-  PreparedModel model;
+  std::shared_ptr<const PreparedModel> model;
   SurfaceIndex surface;                  // of the model
   Packing packing;                       // the voids that are made, or the spheres whose cells they are
   std::optional<CellVoids> cells;        // what is made of them; absent: voids are the packing's own shapes
@@ -27,11 +29,12 @@ struct HollowedModel {
   std::optional<StandFacts> stand = {};
 };
 
-// Loads, inspects, mends, packs, verifies, drains and carves; writes nothing. Throws what `hollow` throws.
-HollowedModel carve_model(const HollowOptions& options, Monitor& monitor);
+// Takes the model from `models`, packs, verifies, drains and carves; writes nothing. Throws what `hollow` throws.
+HollowedModel carve_model(const HollowOptions& options, PreparedModels& models, Monitor& monitor);
 
 // The model with its own cavities opened, and no void: where none can be made. nullopt if it has no cavities, or they are
 // not to be opened.
-std::optional<HollowedModel> open_without_voids(const HollowOptions& options, Monitor& monitor);
+std::optional<HollowedModel> open_without_voids(const HollowOptions& options, PreparedModels& models,
+                                                Monitor& monitor);
 
 }  // namespace aerate

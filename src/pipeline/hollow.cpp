@@ -47,20 +47,20 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
   const auto check = [&](const Mesh& read_back) {
     written.facts = check_written(read_back,
                                   {.solid = hollowed.carved.solid,
-                                   .model = hollowed.model.mesh,
+                                   .model = hollowed.model->mesh,
                                    .surface = hollowed.surface,
-                                   .inspection = hollowed.model.inspection,
+                                   .inspection = hollowed.model->inspection,
                                    .packing = hollowed.packing,
                                    .cells = hollowed.cells ? &*hollowed.cells : nullptr,
                                    .drainage = hollowed.drainage ? &hollowed.drainage->plan : nullptr,
                                    .tolerance = hollowed.carved.tolerance,
-                                   .outer = surface_of(hollowed.model),
-                                   .kept = hollowed.model.kept ? &*hollowed.model.kept : nullptr},
+                                   .outer = surface_of(*hollowed.model),
+                                   .kept = hollowed.model->kept ? &*hollowed.model->kept : nullptr},
                                   monitor);
-    if (hollowed.model.opened) require_no_sealed_cavity(read_back);
+    if (hollowed.model->opened) require_no_sealed_cavity(read_back);
     written.bytes = std::filesystem::file_size(pending.file().path());
     if (options.modifiers) return;
-    written.balance = balance_of(hollowed.model.mesh, written.facts, hollowed.packing.limits.roof.up);
+    written.balance = balance_of(hollowed.model->mesh, written.facts, hollowed.packing.limits.roof.up);
     if (hollowed.stand) require_standing(written.balance, *hollowed.stand);
     warn_of_tipping(written.balance, written.facts, monitor);
   };
@@ -72,7 +72,7 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
 HollowReport report_of(const HollowedModel& hollowed, const WrittenFile& written,
                        const HollowOptions& options,
                        const std::optional<PrintPrediction>& print = std::nullopt) {
-  const PreparedModel& model = hollowed.model;
+  const PreparedModel& model = *hollowed.model;
   HollowReport report;
   report.input = model.input;
   report.limits = hollowed.request.limits();
@@ -124,14 +124,15 @@ std::optional<PrintedCups> cups_of(const HollowedModel& hollowed, const HollowOp
 }
 
 // The best form; if no void can be made in any, the model with its own cavities opened, where that is asked for.
-HollowedForm carve_or_open(std::span<const HollowOptions> forms, Monitor& monitor) {
-  const HollowOptions& options = forms.front();
+HollowedForm carve_or_open(std::span<const JobForm> forms, Monitor& monitor) {
+  const HollowOptions& options = forms.front().options;
+  PreparedModels models;
   try {
-    return carve_best_form(forms, monitor);
+    return carve_best_form(forms, models, monitor);
   } catch (const Error& error) {
     const bool asks_for_voids = options.plugs || options.target || options.stand;
     if (error.code() != ExitCode::nothing_to_remove || asks_for_voids) throw;
-    auto opened = open_without_voids(options, monitor);
+    auto opened = open_without_voids(options, models, monitor);
     if (!opened) throw;
     monitor.notice(
         fmt::format("no voids are made, only the model's own cavities are opened: {}", error.what()));
@@ -143,8 +144,8 @@ HollowedForm carve_or_open(std::span<const HollowOptions> forms, Monitor& monito
 std::optional<CavityFacts> cavities_of(const HollowedModel& hollowed, const HollowOptions& options,
                                        Monitor& monitor) {
   constexpr double kWidestHoles = 2;  // in holes of the request
-  if (!hollowed.model.opened) return std::nullopt;
-  CavityFacts facts{*hollowed.model.opened, std::nullopt};
+  if (!hollowed.model->opened) return std::nullopt;
+  CavityFacts facts{*hollowed.model->opened, std::nullopt};
   if (facts.opened.cavities.empty()) return facts;
   monitor.stage("pools");
   const double widest = kWidestHoles * 2 * options.drainage->hole_radius;
@@ -176,8 +177,8 @@ HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& 
   return report_of(hollowed, written, options);
 }
 
-HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
-  const HollowOptions& options = forms.front();
+HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor) {
+  const HollowOptions& options = forms.front().options;
   static_cast<void>(solid_format_of(options));  // refuses what cannot be written
   if (options.plugs) require_writable(*options.plugs);
   JobLog log(monitor);
@@ -190,7 +191,7 @@ HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
   const WrittenFile written = write_to(pending, best.hollowed, *best.options, log);
   HollowReport report = report_of(best.hollowed, written, *best.options, best.print);
   if (!best.options->modifiers)
-    warn_of_cavities(best.hollowed.model.inspection, best.hollowed.request.process.process, log);
+    warn_of_cavities(best.hollowed.model->inspection, best.hollowed.request.process.process, log);
   report.cups = cups_of(best.hollowed, *best.options, log);
   report.cavities = cavities_of(best.hollowed, *best.options, log);
   if (report.cavities && options.plugs) warn_of_unplugged(report.cavities->opened, log);
@@ -206,7 +207,8 @@ HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor) {
 }
 
 HollowReport hollow(const HollowOptions& options, Monitor& monitor) {
-  return hollow(std::span(&options, 1), monitor);
+  const JobForm form{options};
+  return hollow(std::span(&form, 1), monitor);
 }
 
 }  // namespace aerate

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "core/monitor.h"
+#include "pipeline/best_form.h"
 #include "pipeline/carve_model.h"
 #include "pipeline/options.h"
 #include "pipeline/report.h"
@@ -15,7 +16,7 @@ namespace aerate {
 HollowReport hollow(const HollowOptions& options, Monitor& monitor);
 
 // The same in the best of several forms (pipeline/best_form.h).
-HollowReport hollow(std::span<const HollowOptions> forms, Monitor& monitor);
+HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor);
 
 // Writes a model that was carved in the form that `options.output` and `options.modifiers` say, for who needs several.
 // Neither predicts a print nor tells its stages.

@@ -50,7 +50,7 @@ WrittenPlugs write_plugs(AnnouncedFile& pending, const HollowedModel& hollowed, 
                          Monitor& monitor) {
   WrittenPlugs written;
   written.request = request;
-  written.plugs = make_plugs(hollowed.model.mesh, hollowed.surface, hollowed.carved.solid,
+  written.plugs = make_plugs(hollowed.model->mesh, hollowed.surface, hollowed.carved.solid,
                              hollowed.drainage->plan, request.fit);
   require_some(written.plugs, request.fit);
   warn_of_holes_without(written.plugs, monitor);

@@ -120,10 +120,10 @@ HollowOptions printed_as(HollowOptions options, const std::optional<DescribedPri
 }
 
 // How a form is to be made, in several ways if it is open which is best.
-std::vector<HollowOptions> options_for(PrintForm form, const FormJob& job,
-                                       const std::optional<DescribedPrint>& print) {
+std::vector<JobForm> options_for(PrintForm form, const FormJob& job,
+                                 const std::optional<DescribedPrint>& print) {
   const FormRequest& request = job.request;
-  std::vector<HollowOptions> ways;
+  std::vector<JobForm> ways;
   if (is_modifiers(form)) {
     HollowOptions options = printed_as(request.modifiers, print);
     options.modifiers = {job.slicer.profile, request.modifier_infill_percent};
@@ -131,34 +131,34 @@ std::vector<HollowOptions> options_for(PrintForm form, const FormJob& job,
     options.heavier = HeavierPrint::allow;  // what it takes is judged here
     if (form == PrintForm::lightning_modifiers)
       options = holding_lightning(std::move(options), kLightningInfill);
-    ways.push_back(std::move(options));
+    ways.push_back({std::move(options)});
     return ways;
   }
   for (const HollowOptions& shaped : request.voids) {
-    ways.push_back(printed_as(shaped, print));
+    ways.push_back({printed_as(shaped, print)});
     // Which shape is better can be told of a print that is known alone.
-    if (ways.back().infill_is_known) continue;
-    ways.back().heavier = HeavierPrint::allow;  // the slicer's own figures say it
+    if (ways.back().options.infill_is_known) continue;
+    ways.back().options.heavier = HeavierPrint::allow;  // the slicer's own figures say it
     break;
   }
   return ways;
 }
 
 // Without voids that cost more than they save; with all of them where no others are.
-HollowedForm carve(std::vector<HollowOptions>& ways, Monitor& monitor) {
-  if (!ways.front().infill_is_known || ways.front().heavier == HeavierPrint::allow)
-    return carve_best_form(ways, monitor);
+HollowedForm carve(std::vector<JobForm>& ways, PreparedModels& models, Monitor& monitor) {
+  if (!ways.front().options.infill_is_known || ways.front().options.heavier == HeavierPrint::allow)
+    return carve_best_form(ways, models, monitor);
   HeldNotices held(monitor);
   try {
-    HollowedForm best = carve_best_form(ways, held);
+    HollowedForm best = carve_best_form(ways, models, held);
     held.pass_on();
     return best;
   } catch (const Error& error) {
     if (error.code() != ExitCode::nothing_to_remove) throw;
     ways.resize(1);
-    ways.front().heavier = HeavierPrint::allow;
+    ways.front().options.heavier = HeavierPrint::allow;
     HeldNotices unsaid(monitor);  // that the print becomes heavier
-    return carve_best_form(ways, unsaid);
+    return carve_best_form(ways, models, unsaid);
   }
 }
 
@@ -315,18 +315,20 @@ TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& jo
                           const std::optional<DescribedPrint>& print, Monitor& monitor) {
   TriedForms tried;
   EachNoticeOnce notices(monitor);
+  PreparedModels models;
   std::optional<NothingToRemoveError> refusal;
   bool all_refused = true;
   for (const PrintForm form : forms) {
-    std::vector<HollowOptions> ways = options_for(form, job, print);
-    for (HollowOptions& options : ways) {
+    std::vector<JobForm> ways = options_for(form, job, print);
+    for (JobForm& way : ways) {
+      HollowOptions& options = way.options;
       options.output = model_file(form, job);
       options.object_name = name_in_3mf(job);
       if (blocks_supports(form, job)) options.support_blockers = job.slicer.profile;
     }
     HeldNotices held(monitor);
     try {
-      const HollowedForm best = carve(ways, held);
+      const HollowedForm best = carve(ways, models, held);
       all_refused = false;
       const bool is_predicted = best.print && best.print->described;
       if (is_predicted && !job.request.form && is_hopeless(*best.print)) {

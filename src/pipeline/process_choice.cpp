@@ -164,14 +164,19 @@ ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_s
   constexpr double kLargestUnasked = 10;  // mm
   LimitValue& largest = choice.limits.at(Limit::max_radius);
   LimitValue& least = choice.limits.at(Limit::min_radius);
+  const auto radius_of = [&](double size) { return (size - choice.limits.at(Limit::gap).value) / 2; };
   const bool is_given = !is_default(choice, Limit::max_radius);
+  const auto usual = choice.process.limits.find(Limit::cell_size);
   if (cell_size) {
-    const double radius = (*cell_size - choice.limits.at(Limit::gap).value) / 2;
     if (is_given) throw UsageError("--cell-size and --max-radius say the same", "leave out one of them");
-    if (!(radius > 0))
+    if (!(radius_of(*cell_size) > 0))
       throw UsageError(fmt::format("--cell-size {:g} mm is no more than --gap", *cell_size),
                        "give a larger --cell-size");
-    largest = {radius, "", fmt::format("of --cell-size {:g}", *cell_size)};
+    largest = {radius_of(*cell_size), "", fmt::format("of --cell-size {:g}", *cell_size)};
+  } else if (!is_given && usual != choice.process.limits.end()) {
+    const auto& [size, source, origin] = usual->second;
+    largest = {std::max(radius_of(size), least.value), source,
+               fmt::format("of cells of {:g} mm, {}", size, default_of(choice.process))};
   } else if (!is_given && largest.value > kLargestUnasked) {
     largest = {std::max(kLargestUnasked, least.value), "", "of cells, unless --cell-size says otherwise"};
   }
@@ -197,15 +202,28 @@ ProcessChoice with_larger_cells(ProcessChoice choice) {
   return choice;
 }
 
-std::optional<ProcessChoice> with_usual_limits(const ProcessChoice& choice) {
+std::optional<ProcessChoice> with_smaller_cells(ProcessChoice choice) {
+  LimitValue& largest = choice.limits.at(Limit::max_radius);
+  const LimitValue& of_spheres = choice.process.limits.at(Limit::max_radius);
+  const double least = choice.limits.at(Limit::min_radius).value;
+  if (largest.value <= of_spheres.value || least > of_spheres.value) return std::nullopt;
+  largest = {of_spheres.value, of_spheres.source, "of smaller cells"};
+  return choice;
+}
+
+std::optional<ProcessChoice> with_usual_limits(const ProcessChoice& choice, bool makes_cells) {
+  const Limits& figures = choice.process.limits;
+  const auto size = makes_cells ? figures.find(Limit::cell_size) : figures.end();
   ProcessChoice usual = choice;
   bool allows_more = false;
   for (const Limit limit : {Limit::wall, Limit::gap, Limit::min_radius, Limit::max_radius}) {
     const auto own = choice.process.limits.find(limit);
     if (own == choice.process.limits.end() || is_default(choice, limit)) continue;
     LimitValue& value = usual.limits.at(limit);
+    const double largest =
+        size == figures.end() ? own->second.value : (size->second.value - figures.at(Limit::gap).value) / 2;
     const bool is_freer =
-        limit == Limit::max_radius ? value.value > own->second.value : value.value < own->second.value;
+        limit == Limit::max_radius ? value.value > largest : value.value < own->second.value;
     if (!is_freer) continue;
     value = {own->second.value, own->second.source, default_of(choice.process)};
     allows_more = true;

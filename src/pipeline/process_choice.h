@@ -57,17 +57,22 @@ ProcessChoice limits_under(const Process& process, const Limits& given, ProcessC
 // of the largest balls that need none.
 ProcessChoice kept_to_balls_without_roofs(ProcessChoice choice);
 
-// For voids that are cells: inner walls about `cell_size` mm apart, or the process's largest voids but no larger than
-// those of cells of 21 mm with a gap of 1 mm, which is what the largest radius becomes. Throws UsageError for a size
-// that leaves no radius, or if a largest radius was given beside it.
+// For voids that are cells: inner walls about `cell_size` mm apart, which is what the largest radius becomes. Unless it or
+// that radius is given, the process's own size; of a process without one, its largest voids, but no larger than those of
+// cells of 21 mm with a gap of 1 mm. Throws UsageError for a size that leaves no radius, or if a largest radius was given
+// beside it.
 ProcessChoice sized_for_cells(ProcessChoice choice, std::optional<double> cell_size);
 
-// The same with cells twice as large.
+// A choice that was sized for cells, with cells twice as large.
 ProcessChoice with_larger_cells(ProcessChoice choice);
 
-// The choice with the process's own wall, gap and radii where those that were given allow more. Results under it obey what
-// was given. nullopt if none does.
-std::optional<ProcessChoice> with_usual_limits(const ProcessChoice& choice);
+// The same with cells round spheres no larger than the process's; nullopt if they are not larger.
+std::optional<ProcessChoice> with_smaller_cells(ProcessChoice choice);
+
+// A choice that was not sized for cells yet, with the process's own wall, gap and radii where those that were given allow
+// more. Results under it obey what was given. nullopt if none does.
+//   makes_cells: the largest radius is that of the process's cells
+std::optional<ProcessChoice> with_usual_limits(const ProcessChoice& choice, bool makes_cells);
 
 // The same, with evenly large spheres, whose cells take more than those of many small ones beside large ones: unless
 // the user gave the least radius, it becomes half of the largest that there will be, `fitting` or the limit.

@@ -86,6 +86,8 @@ Process read_process_file(const std::filesystem::path& path) {
       refuse(path, fmt::format("unknown key \"{}\"", key));
     }
   }
+  // Else the base's cells would be larger than what the file says of voids.
+  if (json.contains("max-radius") && !json.contains("cell-size")) process.limits.erase(Limit::cell_size);
   const bool has_overhang = process.limits.contains(Limit::overhang);
   const bool gives_one = json.contains("overhang") || json.contains("bridge");
   if (gives_one && !(has_overhang && process.limits.contains(Limit::bridge))) {

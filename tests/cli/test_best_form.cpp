@@ -65,12 +65,35 @@ TEST(BestForm, IsTheOtherWhereThePreferredCannotBeMade) {
 TEST(BestForm, HasLargerCellsWhereThatSavesHoles) {
   const Job job;
   const std::string bar = job.input("bar.stl", make_box({0, 0, 0}, {60, 10, 10}));
-  const Json usual = report_of(job.hollow(bar, {"--process", "sla", "--cell-size", "21"}));
+  const Json usual = report_of(job.hollow(bar, {"--process", "sla", "--cell-size", "33"}));
   const Json unasked = report_of(job.hollow(bar, {"--process", "sla"}));
   EXPECT_GE(usual["drainage"]["networks"], 2);
   EXPECT_LT(unasked["drainage"]["holes"].size(), usual["drainage"]["holes"].size());
   EXPECT_GT(unasked["volume"]["removed_mm3"].get<double>(), 0.3 * 6000);
-  EXPECT_NE(unasked["notices"].dump().find("--shape cells --cell-size 21"), std::string::npos);
+  EXPECT_NE(unasked["notices"].dump().find("--shape cells --cell-size 33"), std::string::npos);
+}
+
+// Two cells of one group, whose pools take a third hole.
+TEST(BestForm, HasLargerCellsWherePoolsTakeHoles) {
+  const Job job;
+  const std::string box = job.input("box.stl", make_box({0, 0, 0}, {60, 40, 20}));
+  const Json usual = report_of(job.hollow(box, {"--process", "sla", "--cell-size", "33"}));
+  EXPECT_EQ(usual["drainage"]["networks"], 1);
+  EXPECT_GT(usual["drainage"]["holes"].size(), 2U);
+  const Json unasked = report_of(job.hollow(box, {"--process", "sla"}));
+  EXPECT_EQ(unasked["drainage"]["holes"].size(), 2U);
+  EXPECT_GT(unasked["volume"]["removed_mm3"], usual["volume"]["removed_mm3"]);
+}
+
+// Two regions that no cell joins, each with the two holes that it needs: larger cells are the same.
+TEST(BestForm, IsThePreferredWhereOthersAreNoBetter) {
+  const Job job;
+  const std::string pair =
+      job.input("pair.stl", make_blocks({std::vector<float>{0, 20, 26, 46}, {0, 3, 20}, {0, 20}},
+                                        [](int x, int y, int) { return x != 1 || y == 0; }));
+  const Json unasked = report_of(job.hollow(pair, {"--process", "sla"}));
+  EXPECT_EQ(unasked["drainage"]["networks"], 2);
+  EXPECT_TRUE(unasked["notices"].empty()) << unasked["notices"].dump();
 }
 
 // Two legs of 40 mm, 12 mm thick and 30 mm wide.
@@ -89,13 +112,20 @@ TEST(BestForm, OfMoreFreedomRemovesNoLess) {
                                         job.input("ring.stl", make_torus(20, 9, 48, 24)),
                                         job.input("angle.stl", angle_of_12())};
   const std::vector<std::vector<std::string>> freer{
-      {"--gap", "0.5"}, {"--gap", "0.8"}, {"--max-radius", "14"}, {"--min-radius", "2"}};
+      {"--gap", "0.5"}, {"--gap", "0.8"}, {"--max-radius", "20"}, {"--min-radius", "2"}};
   for (const std::string& model : models) {
     for (const std::vector<std::string>& process :
          {std::vector<std::string>{"--process", "sla"}, {"--process", "metal", "--shape", "spheres"}}) {
       if (run(job.hollow(model, process)).exit_code != 0) continue;
-      const double usual = report_of(job.hollow(model, process))["volume"]["removed_percent"].get<double>();
+      const double unasked = report_of(job.hollow(model, process))["volume"]["removed_percent"].get<double>();
       for (const std::vector<std::string>& options : freer) {
+        double usual = unasked;
+        // Cells larger than those that were asked for are not made.
+        if (options[0] == "--max-radius" && process[1] == std::string("sla")) {
+          std::vector<std::string> of_33 = process;
+          of_33.insert(of_33.end(), {"--cell-size", "33"});
+          usual = report_of(job.hollow(model, of_33))["volume"]["removed_percent"].get<double>();
+        }
         std::vector<std::string> all = process;
         all.insert(all.end(), options.begin(), options.end());
         const double removed = report_of(job.hollow(model, all))["volume"]["removed_percent"].get<double>();

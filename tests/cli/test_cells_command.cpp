@@ -68,8 +68,9 @@ TEST(CellsCommand, SealedCellsAreShellsOfTheirOwn) {
 TEST(CellsCommand, InnerWallsAreAsFarApartInASlenderPartAsElsewhere) {
   const Job job;
   const std::string bar = job.input("bar.stl", make_box({0, 0, 0}, {120, 14, 14}));
-  const Json spread = json_of(job.hollow(bar, {"--process", "sla", "--no-drain"}));
-  const Json all = json_of(job.hollow(bar, {"--process", "sla", "--no-drain", "--min-radius", "4"}));
+  const Json spread = json_of(job.hollow(bar, {"--process", "sla", "--no-drain", "--cell-size", "21"}));
+  const Json all =
+      json_of(job.hollow(bar, {"--process", "sla", "--no-drain", "--max-radius", "10", "--min-radius", "4"}));
   EXPECT_LE(spread["voids"]["count"], 7);
   EXPECT_GE(spread["voids"]["count"], 4);
   EXPECT_GE(all["voids"]["count"], 9);

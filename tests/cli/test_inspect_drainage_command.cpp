@@ -58,7 +58,7 @@ void expect_agreement(const Json& planned, const Json& found) {
 
 TEST(InspectDrainageCommand, AgreesWithThePlanOfCells) {
   const Job job;
-  const Json planned = json_of(job.hollow(sample("bunny.stl"), {"--process", "sla"}));
+  const Json planned = json_of(job.hollow(sample("bunny.stl"), {"--process", "sla", "--cell-size", "21"}));
   const Json found = json_of(inspect(job.output()));
   expect_agreement(planned, found);
   EXPECT_NEAR(found["drainage"]["thinnest_wall_mm"].get<double>(),

@@ -196,7 +196,7 @@ TEST(ProcessOptions, EveryLimitCanBeOverriddenAndTheReportSaysByWhat) {
   EXPECT_EQ(report["limits"]["gap_mm"], 2.0);
   EXPECT_EQ(origin_of(report, "gap")["origin"], "configuration file");
   EXPECT_EQ(origin_of(report, "min-radius")["origin"], "command line");
-  EXPECT_EQ(origin_of(report, "max-radius")["origin"], "default of sls");
+  EXPECT_EQ(origin_of(report, "max-radius")["origin"], "of cells of 33 mm, default of sls");
   EXPECT_EQ(report["material"]["name"], "PETG");
 
   const ProcessResult text = run(job.hollow(job.folder() / "cube.stl", {"--wall", "2.5"}));
@@ -213,9 +213,21 @@ TEST(ProcessOptions, AProcessOfTheUsersOwn) {
   EXPECT_EQ(report["process"]["name"], "mine");
   EXPECT_EQ(report["limits"]["wall_mm"], 1.5);
   EXPECT_EQ(report["limits"]["gap_mm"], 0.8);
-  EXPECT_EQ(report["limits"]["max_radius_mm"], 10.0);
+  EXPECT_EQ(report["limits"]["max_radius_mm"], (33 - 0.8) / 2);
   EXPECT_EQ(origin_of(report, "gap")["source"], "mine.json: data sheet");
   EXPECT_TRUE(report["process"]["drainage_needed"].get<bool>());
+}
+
+// The base's cells would be larger than what the file says of voids.
+TEST(ProcessOptions, AProcessFileSaysHowLargeCellsAre) {
+  const Job job;
+  const auto largest = [&](const std::string& file) {
+    const Json report = report_of(job, {"--process", job.input("mine.json", file), "--no-drain"});
+    return report["limits"]["max_radius_mm"].get<double>();
+  };
+  EXPECT_EQ(largest(R"({"base": "sla", "max-radius": 7})"), 7);
+  EXPECT_EQ(largest(R"({"base": "sla", "cell-size": 15})"), 7);
+  EXPECT_EQ(largest(R"({"base": "sla", "max-radius": 9, "cell-size": 15})"), 7);
 }
 
 // A configuration folder with these process files, and the environment that says so.
