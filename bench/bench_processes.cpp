@@ -126,6 +126,7 @@ std::string measure_processes(const std::filesystem::path& model, const std::fil
     add_row(process.name + " spheres", options);
     if (process.limits.contains(Limit::bridge)) continue;  // cells have no roofs
     options.packing.process = sized_for_cells(std::move(options.packing.process), std::nullopt);
+    options.packing.is_for_cells = true;
     options.cells = {.fillet = drainage_of(options.packing.process)->channel_radius};
     options.tolerance = kCellTolerance;
     add_row(process.name + " cells", options);

@@ -44,6 +44,32 @@ auto parse_after(std::string_view text, std::string_view prefix, const Parse& pa
   return parse(text.substr(prefix.size()));
 }
 
+constexpr const char* kOneOrTheOther = "leave out one or the other";
+
+// Sides, or heights, that are asked for and forbidden at once.
+void require_somewhere(const HoleSides& sides) {
+  constexpr double kSame = 1 - 1e-9;  // cosine
+  for (const Vec3d on : sides.on)
+    for (const Vec3d not_on : sides.not_on)
+      if (dot(on, not_on) > kSame)
+        throw UsageError("--holes-on and --holes-not-on name the same side", kOneOrTheOther);
+  if (sides.not_below >= sides.not_above)
+    throw UsageError(fmt::format("--holes-not-on: no height is left between below:{:g} and above:{:g}",
+                                 sides.not_below, sides.not_above),
+                     "give heights in mm along --up");
+}
+
+// Two places that one hole would take.
+void require_apart(const std::vector<Vec3d>& places, double diameter) {
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (const double apart = length(places[i] - places[j]); apart < diameter)
+        throw UsageError(fmt::format("the --escape-hole places {} and {} are {:.4g} mm apart, less than a "
+                                     "hole of {:g} mm is wide",
+                                     j + 1, i + 1, apart, diameter),
+                         "give each hole a place of its own");
+}
+
 }  // namespace
 
 BuildOption::BuildOption(CLI::App& command)
@@ -137,6 +163,7 @@ HoleSides DrainageOptions::sides(Vec3d up) const {
           "give bottom, top, left, right, front, back, a direction x,y,z, above:HEIGHT, below:HEIGHT or "
           "box:x0,y0,z0,x1,y1,z1");
   }
+  require_somewhere(sides);
   if (places_.size() >= 2 && !sides.is_anywhere())
     throw UsageError(
         "two --escape-hole places are all the holes there are: --holes-on and --holes-not-on choose none",
@@ -169,6 +196,7 @@ HollowOptions DrainageOptions::applied_to(HollowOptions options) const {
   }
   options.packing.process = with_tubes(choice, limits_.given());
   options.drainage = drainage_request(options.packing.process, escape_holes());
+  require_apart(options.drainage->escape_holes, 2 * options.drainage->hole_radius);
   options.drainage->sides = sides(choice.direction.up);
   options.build = build_.build();
   const Limits& limits = options.packing.process.process.limits;

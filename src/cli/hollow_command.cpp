@@ -180,11 +180,28 @@ struct HollowCommand {
         ->type_name("PRICE");
     command
         .add_option("--price-per", price_per,
-                    "What --price buys: a kg, or a l of what is printed (as resin is sold)")
-        ->check(CLI::IsMember({"kg", "l"}))
+                    "What --price buys: a kg, a l of what is printed (as resin is sold), or a bulk-l of "
+                    "loose powder")
+        ->check(CLI::IsMember({"kg", "l", "bulk-l"}))
         ->needs("--price")
         ->type_name("UNIT")
         ->capture_default_str();
+    command
+        .add_option(
+            "--bulk-density", bulk_density,
+            "Density of the loose powder in g/cm3, for --price-per bulk-l (default that of the material)")
+        ->check(number_between({}, 100, "g/cm3"))
+        ->type_name("G/CM3");
+  }
+
+  // What the user gave of the material.
+  MaterialFigures material_figures() const {
+    MaterialFigures given{density, bulk_density, price};
+    for (const PriceUnit unit : {PriceUnit::litre, PriceUnit::bulk_litre})
+      if (price_per == name_of(unit)) given.per = unit;
+    if (bulk_density && given.per != PriceUnit::bulk_litre)
+      throw UsageError("--bulk-density without --price-per bulk-l", "it is for the price of loose powder");
+    return given;
   }
 
   const SlicerProfile* slicer_of_flavor() const {
@@ -279,9 +296,8 @@ struct HollowCommand {
     if (max_triangles) options.max_triangles = static_cast<std::size_t>(*max_triangles);
     options.voxel_size = voxel_size;
     options.max_hole = max_hole;
-    options.material =
-        choose_material(material.empty() ? options.packing.process.process.material : material, density,
-                        price, price_per == "l" ? PriceUnit::litre : PriceUnit::kilogram);
+    options.material = choose_material(material.empty() ? options.packing.process.process.material : material,
+                                       material_figures());
     options.target = target(options);
     options.stand = standing(options);
     return options;
@@ -389,7 +405,7 @@ struct HollowCommand {
   std::optional<double> target_mass;
   std::optional<double> target_saving;
   std::string stand;
-  std::optional<double> density;
+  std::optional<double> density, bulk_density;
   std::optional<double> price;
   std::string price_per = "kg";
 };

@@ -359,9 +359,8 @@ void add_material(Lines& lines, const HollowReport& report) {
   const MaterialUse use = material_use(report);
   const Material& material = report.material;
   const std::string figures =
-      material.priced_per == PriceUnit::litre
-          ? fmt::format("{:g} g/cm3 and {:g} a litre", material.density_g_cm3, material.price_per_litre())
-          : fmt::format("{:g} g/cm3 and {:g} a kg", material.density_g_cm3, material.price_per_kg);
+      fmt::format("{:g} g/cm3 and {:g} a {}", material.density_g_cm3, material.price_per(material.priced_per),
+                  name_of(material.priced_per));
   if (report.modifiers && report.modifiers->hold_lightning) {
     lines.add("material", "lightning infill takes less than its density says; 'aerate slice' tells what");
     return;

@@ -122,7 +122,7 @@ bool may_be_done_otherwise(const Error& error) {
 }
 
 // Whether larger cells may do with fewer holes: each group of voids takes two, those beyond are for pools.
-bool takes_many_holes(const HollowedForm& form) {
+bool has_many_holes(const HollowedForm& form) {
   const auto& drainage = form.hollowed.drainage;
   if (!drainage) return false;
   const DrainagePlan& plan = drainage->plan;
@@ -144,12 +144,21 @@ struct Search {
   std::optional<HollowedForm> best;
   std::vector<std::string> notices;  // of the best, and of what it was compared with
   std::optional<Error> refusal;      // of the preferred form
-  bool takes_many_holes = false;     // the form that the next would be larger cells of
   int limits = 0, limits_of_best = 0;
+  // Of the best of the forms that differ in the size of cells alone, as far as they were made.
+  bool takes_many_holes = false;
+  double worth_of_size = 0;
 
   bool is_worth_trying(const JobForm& form) const {
     if (!best || best->options->infill_is_known || leaves_out_much(*best)) return true;
     return form.tried == FormTrial::always || (form.tried == FormTrial::for_fewer_holes && takes_many_holes);
+  }
+
+  void note_size(const HollowedForm& form, FormTrial tried) {
+    const double its_worth = worth(form);
+    if (tried == FormTrial::for_fewer_holes && !is_more(its_worth, worth_of_size)) return;
+    takes_many_holes = has_many_holes(form);
+    worth_of_size = its_worth;
   }
 
   // Limits that allow more are no reason to remove less.
@@ -206,7 +215,7 @@ void try_form(const JobForm& job, bool is_preferred, PreparedModels& models, Sea
   HeldNotices held(monitor);
   try {
     HollowedForm form = carve_form(job.options, models, held);
-    search.takes_many_holes = takes_many_holes(form);
+    search.note_size(form, job.tried);
     const bool is_better = search.is_better(form);
     std::string choice;
     if (search.best && is_better)
@@ -232,13 +241,12 @@ HollowedForm carve_best_form(std::span<const JobForm> forms, PreparedModels& mod
   if (forms.size() == 1) return carve_form(preferred, models, monitor);
   Search search;
   for (const JobForm& form : forms) try_form(form, &form == &forms.front(), models, search, monitor);
-  auto& [best, notices, refusal, takes_many, limits, limits_of_best] = search;
-  if (!best) throw Error(*refusal);
-  if (refusal)
-    notices.push_back(
-        fmt::format("voids are {}, since with {} {}", name_of(*best), option_of(preferred), refusal->what()));
-  for (const std::string& notice : notices) monitor.notice(notice);
-  return std::move(*best);
+  if (!search.best) throw Error(*search.refusal);
+  if (search.refusal)
+    search.notices.push_back(fmt::format("voids are {}, since with {} {}", name_of(*search.best),
+                                         option_of(preferred), search.refusal->what()));
+  for (const std::string& notice : search.notices) monitor.notice(notice);
+  return std::move(*search.best);
 }
 
 }  // namespace aerate

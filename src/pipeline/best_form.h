@@ -21,7 +21,7 @@ struct HollowedForm {
 // was packed, or filament decides, each is.
 enum class FormTrial {
   always,
-  for_fewer_holes,  // if the form before it has several groups of voids, or takes more than two holes for pools
+  for_fewer_holes,  // cells of another size: if the best of those before it are several groups, or more than two holes drain one
   for_more_volume,  // else not
 };
 

@@ -285,6 +285,17 @@ TEST_P(HolesOn, ASideThatTheModelLacks) {
                  {"--holes-on"});
 }
 
+TEST(DrainageOptions, PlacesAndSidesThatContradictEachOther) {
+  const auto refused = [](std::vector<std::string> options, std::string_view why) {
+    options.insert(options.end(), {"--process", "sla"});
+    expect_refused(Job(), options, kUsage, {std::string(why)});
+  };
+  refused({"--escape-hole", "25,20,40", "--escape-hole", "25,20,0", "--escape-hole", "25,21,40"},
+          "places 1 and 3 are 1 mm apart");
+  refused({"--holes-on", "left", "--holes-not-on", "-1,0,0"}, "the same side");
+  refused({"--holes-not-on", "above:5", "--holes-not-on", "below:8"}, "no height is left");
+}
+
 TEST(DrainageOptions, HolesSayWhatTheyAreForAndHowMuchTheyShow) {
   const Job job;
   const auto model = job.input("block.stl", block_of_50());

@@ -33,24 +33,41 @@ TEST(Materials, AnUnknownOneNamesThoseThereAre) {
 }
 
 TEST(Materials, FiguresCanBeOverridden) {
-  EXPECT_EQ(choose_material("petg", {}, {}).name, "PETG");
-  const Material dear = choose_material("PLA", {}, 90);
+  EXPECT_EQ(choose_material("petg", {}).name, "PETG");
+  const Material dear = choose_material("PLA", {.price = 90});
   EXPECT_EQ(dear.price_per_kg, 90);
-  EXPECT_EQ(dear.density_g_cm3, choose_material("PLA", {}, {}).density_g_cm3);
-  EXPECT_EQ(choose_material("oak", 0.7, 3).density_g_cm3, 0.7);
-  EXPECT_TRUE(contains(message_of<UsageError>([] { choose_material("oak", 0.7, {}); }), "PLA"));
+  EXPECT_EQ(dear.density_g_cm3, choose_material("PLA").density_g_cm3);
+  EXPECT_EQ(choose_material("oak", {.density_g_cm3 = 0.7, .price = 3}).density_g_cm3, 0.7);
+  EXPECT_TRUE(
+      contains(message_of<UsageError>([] { choose_material("oak", {.density_g_cm3 = 0.7}); }), "PLA"));
 }
 
 TEST(Materials, APriceMayBeThatOfALitre) {
-  const Material resin = choose_material("resin", {}, 60, PriceUnit::litre);
+  const Material resin = choose_material("resin", {.price = 60, .per = PriceUnit::litre});
   EXPECT_DOUBLE_EQ(resin.price_per_litre(), 60);
   EXPECT_DOUBLE_EQ(resin.price_per_kg * resin.density_g_cm3, 60);
   EXPECT_EQ(resin.priced_per, PriceUnit::litre);
   // The density that was given counts, of a material of its own too.
-  EXPECT_DOUBLE_EQ(choose_material("resin", 1.2, 60, PriceUnit::litre).price_per_kg, 50);
-  EXPECT_DOUBLE_EQ(choose_material("wax", 0.9, 90, PriceUnit::litre).price_per_kg, 100);
-  EXPECT_DOUBLE_EQ(choose_material("wax", 0.9, 90).price_per_litre(), 81);
+  EXPECT_DOUBLE_EQ(
+      choose_material("resin", {.density_g_cm3 = 1.2, .price = 60, .per = PriceUnit::litre}).price_per_kg,
+      50);
+  EXPECT_DOUBLE_EQ(
+      choose_material("wax", {.density_g_cm3 = 0.9, .price = 90, .per = PriceUnit::litre}).price_per_kg, 100);
+  EXPECT_DOUBLE_EQ(choose_material("wax", {.density_g_cm3 = 0.9, .price = 90}).price_per_litre(), 81);
   EXPECT_EQ(choose_material("resin").priced_per, PriceUnit::kilogram);
+}
+
+// A litre of loose powder holds less of it than a litre of what is printed.
+TEST(Materials, APriceMayBeThatOfPowderByBulk) {
+  const Material powder = choose_material("PA12", {.price = 20, .per = PriceUnit::bulk_litre});
+  EXPECT_DOUBLE_EQ(powder.price_per_kg, 20 / 0.425);
+  EXPECT_DOUBLE_EQ(powder.price_per(PriceUnit::bulk_litre), 20);
+  EXPECT_GT(powder.price_per_litre(), 40);
+  const MaterialFigures loose{.bulk_density_g_cm3 = 0.5, .price = 20, .per = PriceUnit::bulk_litre};
+  EXPECT_DOUBLE_EQ(choose_material("PA12", loose).price_per_kg, 40);
+  EXPECT_TRUE(contains(message_of<UsageError>(
+                           [] { choose_material("AlSi10Mg", {.price = 20, .per = PriceUnit::bulk_litre}); }),
+                       "bulk density of AlSi10Mg"));
 }
 
 }  // namespace
