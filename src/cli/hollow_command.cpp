@@ -17,6 +17,7 @@
 #include "cli/numbers.h"
 #include "cli/print_options.h"
 #include "cli/run_reported.h"
+#include "cli/view_options.h"
 #include "cli/void_options.h"
 #include "core/error.h"
 #include "core/listed.h"
@@ -83,6 +84,7 @@ struct HollowCommand {
         drainage(command, config),
         cells(command, words_of_cells()),
         print(command, config),
+        views(command, "the result"),
         run_options(command),
         modifier_options(config),
         flavor_option(config) {
@@ -300,6 +302,7 @@ struct HollowCommand {
                                        material_figures());
     options.target = target(options);
     options.stand = standing(options);
+    options.views = views.outputs();
     return options;
   }
 
@@ -378,6 +381,7 @@ struct HollowCommand {
     files.inputs.push_back({"list of spheres", spheres});
     files.inputs.push_back({"file of print settings", print.file()});
     if (!drainage.plugs().empty()) files.outputs.emplace_back(drainage.plugs());
+    files.add_outputs(views.files());
     run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
   }
 
@@ -387,6 +391,7 @@ struct HollowCommand {
   DrainageOptions drainage;
   CellCommandOptions cells;
   PrintOptions print;
+  ViewOptions views;
   RunOptions run_options;
   ModifierOnlyOptions modifier_options, flavor_option;
   std::string output;

@@ -9,6 +9,7 @@
 #include "cli/numbers.h"
 #include "cli/process_options.h"
 #include "cli/run_reported.h"
+#include "cli/view_options.h"
 #include "core/error.h"
 #include "pipeline/inspect_model.h"
 
@@ -22,6 +23,7 @@ struct InspectCommand {
         process_option(add_process_option(command, process, "with --drainage")),
         up(command, config_file),
         build(command),
+        views(command, "the model, with what is wrong at its place"),
         run_options(command) {
     command.add_flag("--self-intersections", self_intersections,
                      "Also look for triangles that intersect each other (slow for large models)");
@@ -50,9 +52,11 @@ struct InspectCommand {
     options.model = model.path;
     options.load = model.load();
     options.weld = model.weld;
+    options.views = views.outputs();
     if (self_intersections) options.self_intersections = SelfIntersectionSearch::on;
     JobFiles files{{{"model", options.model}, {"configuration file", config.path()}}, {}};
     if (drainage) files.inputs.push_back({"process file", process_file_of(process)});
+    files.add_outputs(views.files());
     run_reported(run_options, files, [&](Monitor& monitor) { return inspect_model(options, monitor); });
   }
 
@@ -62,6 +66,7 @@ struct InspectCommand {
   const CLI::Option* process_option;
   DirectionOption up;
   BuildOption build;
+  ViewOptions views;
   RunOptions run_options;
   bool drainage = false;
   std::optional<double> widest_hole;

@@ -20,7 +20,7 @@ class InterruptGuard {
   void guard(const std::filesystem::path& path);
   void release(const std::filesystem::path& path);
 
-  static constexpr int kMostFiles = 4;
+  static constexpr int kMostFiles = 8;
 };
 
 }  // namespace aerate::cli

@@ -10,6 +10,7 @@
 #include "cli/keep_solid_options.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
+#include "cli/view_options.h"
 #include "cli/void_options.h"
 #include "core/error.h"
 #include "files/cell_table.h"
@@ -48,6 +49,7 @@ struct PackCommand {
         packing(command, config),
         keep_solid(command),
         cells(command, words_of_cells()),
+        views(command, "what was packed in the model"),
         run_options(command) {
     command
         .add_option("-o,--output", output,
@@ -69,6 +71,7 @@ struct PackCommand {
         cells.applied_to(packing.request(), cells.asks_for_cells().value_or(false), CellOptions{}.fillet);
     options.packing = std::move(shaped.packing);
     options.cells = shaped.cells;
+    options.views = views.outputs();
     options.tolerance = shaped.tolerance.value_or(options.tolerance);
     if (!options.cells) require_table(options.output);
     if (!options.cells)
@@ -88,6 +91,7 @@ struct PackCommand {
     const PackOptions options = to_pipeline();
     JobFiles files{packing.inputs(model.path), {options.output}};
     for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
+    files.add_outputs(views.files());
     run_reported(run_options, files, [&](Monitor& monitor) { return pack(options, monitor); });
   }
 
@@ -95,6 +99,7 @@ struct PackCommand {
   PackingCommandOptions packing;
   KeepSolidOptions keep_solid;
   CellCommandOptions cells;
+  ViewOptions views;
   RunOptions run_options;
   std::string output;
 };

@@ -22,6 +22,10 @@ struct RenderedReport {
 struct JobFiles {
   std::vector<NamedInput> inputs;
   std::vector<std::filesystem::path> outputs;
+
+  void add_outputs(const std::vector<std::filesystem::path>& more) {
+    outputs.insert(outputs.end(), more.begin(), more.end());
+  }
 };
 
 // As `run_reported`, for a job whose report is rendered.

@@ -10,6 +10,7 @@
 #include "cli/form_options.h"
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
+#include "cli/view_options.h"
 #include "core/listed.h"
 #include "pipeline/slice_model.h"
 
@@ -43,7 +44,7 @@ std::vector<std::string> names_of_patterns() {
 
 struct SliceCommand {
   SliceCommand(CLI::App& command, const ConfigFile& config)
-      : model(command), form(command, config, names_of_patterns()), run_options(command) {
+      : model(command), form(command, config, names_of_patterns()), views(command, "what is sliced"), run_options(command) {
     command
         .add_option("--compare", comparison,
                     "What is sliced beside solid, voids and modifiers: forms (nothing), lightning (the solid "
@@ -74,6 +75,7 @@ struct SliceCommand {
     options.settings.files.assign(settings.begin(), settings.end());
     options.request = form.request(model);
     options.comparison = kComparisons.at(comparison);
+    options.views = views.outputs();
     return options;
   }
 
@@ -81,11 +83,13 @@ struct SliceCommand {
     const SliceModelOptions options = to_pipeline();
     JobFiles files{form.inputs(model), {options.output}};
     for (const std::string& file : settings) files.inputs.push_back({"file of settings", file});
+    files.add_outputs(views.files());
     run_reported(run_options, files, [&](Monitor& monitor) { return slice_model(options, monitor); });
   }
 
   ModelOptions model;
   FormOptions form;
+  ViewOptions views;
   RunOptions run_options;
   std::string output;
   std::string slicer;

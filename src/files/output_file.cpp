@@ -1,6 +1,7 @@
 #include "files/output_file.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <exception>
@@ -142,17 +143,20 @@ void PendingFile::commit() {
   ::close(descriptor);
 }
 
-void commit_both(PendingFile& first, PendingFile& second) {
-  first.prepare();
-  second.prepare();
-  first.commit();
+void commit_all(std::span<PendingFile* const> files) {
+  for (PendingFile* const file : files) file->prepare();
+  std::size_t committed = 0;
   try {
-    second.commit();
+    for (; committed < files.size(); ++committed) files[committed]->commit();
   } catch (...) {
     std::error_code ignored;
-    fs::remove(first.target(), ignored);
+    for (PendingFile* const file : files.first(committed)) fs::remove(file->target(), ignored);
     throw;
   }
+}
+
+void commit_both(PendingFile& first, PendingFile& second) {
+  commit_all(std::array{&first, &second});
 }
 
 OutputFile::OutputFile(Destination destination)

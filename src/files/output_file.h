@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -35,8 +36,9 @@ class PendingFile {
   bool prepared_ = false, committed_ = false;
 };
 
-// Makes both files their targets, or neither: all that can fail but renaming is done before the first takes its place.
-// Should renaming the second one fail, the first is removed again; a file that it replaced is then gone.
+// Makes all files their targets, or none: all that can fail but renaming is done before the first takes its place.
+// Should renaming a later one fail, those before it are removed again; a file that one of them replaced is then gone.
+void commit_all(std::span<PendingFile* const> files);
 void commit_both(PendingFile& first, PendingFile& second);
 
 // Where bytes go, and the name that errors use: of a pending file, its target.

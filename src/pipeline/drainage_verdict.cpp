@@ -109,7 +109,11 @@ std::optional<PrintedCups> printed_cups(const std::vector<AirCup>& cups, const P
   if (limit == process.limits.end()) return std::nullopt;
   PrintedCups printed{.build = build, .limit = limit->second, .widest = std::nullopt, .over_limit = 0};
   if (!cups.empty()) printed.widest = cups.front();
-  for (const AirCup& cup : cups) printed.over_limit += cup.area > printed.limit.value ? 1 : 0;
+  for (const AirCup& cup : cups) {
+    const bool is_over = cup.area > printed.limit.value;
+    printed.over_limit += is_over ? 1 : 0;
+    if (is_over || printed.worst.empty()) printed.worst.push_back(cup);
+  }
   return printed;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/monitor.h"
 #include "packing/air/inspect_drainage.h"
@@ -18,6 +19,7 @@ struct PrintedCups {
   LimitValue limit;              // mm2
   std::optional<AirCup> widest;  // absent: there are none
   std::size_t over_limit = 0;
+  std::vector<AirCup> worst = {};  // the widest, and all others over the limit
 };
 
 // nullopt in a process that limits no cups.

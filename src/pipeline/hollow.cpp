@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "check/check_failure.h"
 #include "check/check_opened.h"
@@ -17,7 +18,9 @@
 #include "pipeline/job_log.h"
 #include "pipeline/own_cavities.h"
 #include "pipeline/plug_file.h"
+#include "pipeline/scene_of.h"
 #include "pipeline/solid_file.h"
+#include "pipeline/view_files.h"
 
 namespace aerate {
 namespace {
@@ -185,6 +188,7 @@ HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor) {
   for (const std::string& remark : options.print_remarks) log.notice(remark);
   // Made before the long stages, so that a place that cannot be written to is found at once.
   AnnouncedFile pending(options.output, log);
+  ViewFiles views(options.views, log);
   std::optional<AnnouncedFile> pending_plugs;
   if (options.plugs) pending_plugs.emplace(options.plugs->output, log);
   const HollowedForm best = carve_or_open(forms, log);
@@ -195,12 +199,14 @@ HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor) {
   report.cups = cups_of(best.hollowed, *best.options, log);
   report.cavities = cavities_of(best.hollowed, *best.options, log);
   if (report.cavities && options.plugs) warn_of_unplugged(report.cavities->opened, log);
+  std::vector<PendingFile*> results;
   if (pending_plugs) {
     report.plugs = write_plugs(*pending_plugs, best.hollowed, *options.plugs, log);
-    commit_both(pending_plugs->file(), pending.file());
-  } else {
-    pending.file().commit();
+    results.push_back(&pending_plugs->file());
   }
+  results.push_back(&pending.file());
+  views.write([&] { return scene_of(best.hollowed, report); }, log);
+  views.commit_with(std::move(results));
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

@@ -7,6 +7,7 @@
 #include "files/load.h"
 #include "pipeline/drainage_verdict.h"
 #include "pipeline/report.h"
+#include "pipeline/view_outputs.h"
 
 namespace aerate {
 
@@ -18,6 +19,7 @@ struct InspectOptions {
   std::optional<double> weld;  // see HollowOptions
   SelfIntersectionSearch self_intersections = SelfIntersectionSearch::off;
   std::optional<DrainageInquiry> drainage;  // how it drains is asked, too
+  ViewOutputs views;
 };
 
 // Loads a model and looks at it; nothing about it is an error but what load_model throws. Throws UsageError for an inquiry

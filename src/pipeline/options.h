@@ -13,6 +13,7 @@
 #include "packing/methods.h"
 #include "pipeline/process_choice.h"
 #include "pipeline/region_request.h"
+#include "pipeline/view_outputs.h"
 #include "printing/materials.h"
 #include "printing/plugs.h"
 #include "printing/print_settings.h"
@@ -78,6 +79,7 @@ struct PackOptions {
   std::vector<RegionRequest> keep_solid;  // see HollowOptions
   std::optional<CellOptions> cells;
   double tolerance = kCellTolerance;  // of pieces, mm; see HollowOptions
+  ViewOutputs views;
 };
 
 // What to do when voids make a print heavier than it would be without them.
@@ -171,6 +173,8 @@ struct HollowOptions {
   HeavierPrint heavier = HeavierPrint::refuse;
   // Voids are made from this share on of the radius from which they save in such a print (docs/economics.md).
   double paying_share = 1;
+
+  ViewOutputs views;  // of the result
 };
 
 }  // namespace aerate

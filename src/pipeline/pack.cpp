@@ -18,6 +18,8 @@
 #include "pipeline/keep_solid.h"
 #include "pipeline/pack_cells.h"
 #include "pipeline/print_prediction.h"
+#include "pipeline/scene_of.h"
+#include "pipeline/view_files.h"
 
 namespace aerate {
 namespace {
@@ -248,6 +250,7 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
   load.wanted_modifiers = names_of_regions(options.keep_solid);
   PreparedModel model = load_and_inspect(options.model, load, log);
   AnnouncedFile file(options.output, log);
+  ViewFiles views(options.views, log);
   model = make_usable(std::move(model), {.mode = SurfaceMode::keep, .weld = options.weld}, log);
   model.kept =
       keep_solid(model, options.keep_solid, {options.load, options.weld, options.packing.limits().wall}, log);
@@ -265,18 +268,23 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
     report.kept = {
         model.kept->count, model.kept->volume,
         measure_clearances(model.kept->within, report.packing.spheres, report.packing.limits.roof).wall};
+  std::optional<CellVoids> shapes;
   if (cells) {
     Packing of_cells = report.packing;
     of_cells.limits = report.limits;
-    report.cells = write_cells(model, surface, of_cells, options, *cells, file, log);
+    WrittenCells written = write_cells(model, surface, of_cells, options, *cells, file, log);
+    shapes = std::move(written.shapes);
+    report.cells = written.facts;
     report.output_bytes = report.cells->file_bytes;
     if (report.kept && report.cells->pieces) report.kept->wall = report.cells->pieces->kept_wall;
   } else {
     log.stage("write");
     const std::string table = sphere_table(report.packing, *spheres);
     report.output_bytes = table.size();
-    file.commit_text(table);
+    write_bytes(table, file.file());
   }
+  views.write([&] { return scene_of(model, surface, report, shapes ? &*shapes : nullptr, log); }, log);
+  views.commit_with({&file.file()});
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

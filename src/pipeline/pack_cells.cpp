@@ -14,10 +14,8 @@ namespace {
 
 // Adds what was found on the file.
 void write_pieces(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
-                  const CellPlanes& planes, const PackOptions& options, const MeshFormat& format,
+                  const CellVoids& cells, const PackOptions& options, const MeshFormat& format,
                   AnnouncedFile& file, PackedCells& written, Monitor& monitor) {
-  const CellVoids cells =
-      shape_sound_cells(model, surface, packing, planes, {options.cells->fillet, options.tolerance}, monitor);
   const Solid voids = carve_cells({}, cells);
   const Solid pieces{with_void_shells_turned(voids.mesh, voids), {}};
   const auto check = [&](const Mesh& read_back) {
@@ -34,7 +32,7 @@ void write_pieces(const PreparedModel& model, const SurfaceIndex& surface, const
                                    .kept = model.kept ? &*model.kept : nullptr},
                                   monitor);
   };
-  write_checked(pieces, file, {.mesh = &format, .modifiers = {}, .blockers = {}, .object_name = {}}, check,
+  write_beside(pieces, file, {.mesh = &format, .modifiers = {}, .blockers = {}, .object_name = {}}, check,
                 monitor);
 }
 
@@ -51,25 +49,30 @@ CellFormat cell_format_of(const std::filesystem::path& path) {
                   endings_that_are_written()));
 }
 
-PackedCells write_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+WrittenCells write_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
                         const PackOptions& options, const CellFormat& format, AnnouncedFile& file,
                         Monitor& monitor) {
   monitor.stage("shape");
   const CellPlanes planes = planes_of_cells(model, packing, options.packing.device, monitor);
-  PackedCells written;
+  WrittenCells result;
+  PackedCells& written = result.facts;
   written.options = options.cells.value();
   written.tolerance = options.tolerance;
   written.plane_count = planes.planes.size();
+  const bool writes_pieces = std::holds_alternative<const MeshFormat*>(format);
+  if (writes_pieces || options.views.are_asked_for())
+    result.shapes = shape_sound_cells(model, surface, packing, planes,
+                                      {options.cells->fillet, options.tolerance}, monitor);
   if (const auto* const table = std::get_if<CellTableFormat>(&format)) {
     monitor.stage("write");
     const std::string text = cell_table(packing, planes, *table);
     written.file_bytes = text.size();
-    file.commit_text(text);
-    return written;
+    write_bytes(text, file.file());
+    return result;
   }
-  write_pieces(model, surface, packing, planes, options, *std::get<const MeshFormat*>(format), file, written,
+  write_pieces(model, surface, packing, *result.shapes, options, *std::get<const MeshFormat*>(format), file, written,
                monitor);
-  return written;
+  return result;
 }
 
 }  // namespace aerate

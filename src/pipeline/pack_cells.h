@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <variant>
 
+#include "core/cells.h"
 #include "core/monitor.h"
 #include "core/packing.h"
 #include "core/surface_index.h"
@@ -21,12 +23,17 @@ using CellFormat = std::variant<CellTableFormat, const MeshFormat*>;
 // From the file name's ending. Throws UsageError for one that cannot be written.
 CellFormat cell_format_of(const std::filesystem::path& path);
 
-// Writes the cells of a verified packing, under the limits that cells obey. Planes are those of whole cells; pieces
-// are what `hollow` removes where voids are sealed, each a closed shell that faces outward. Pieces appear only after
-// they were read back and checked. `surface` is the model's. Throws what shape_sound_cells and check_pieces throw;
+struct WrittenCells {
+  PackedCells facts;
+  std::optional<CellVoids> shapes;  // where pieces or pictures are made of them
+};
+
+// Writes the cells of a verified packing, under the limits that cells obey, beside their target. Planes are those of whole cells; pieces
+// are what `hollow` removes where voids are sealed, each a closed shell that faces outward; they are read back and
+// checked. `surface` is the model's. Throws what shape_sound_cells and check_pieces throw;
 // FailureError with the system's reason.
-PackedCells write_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
-                        const PackOptions& options, const CellFormat& format, AnnouncedFile& file,
-                        Monitor& monitor);
+WrittenCells write_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
+                         const PackOptions& options, const CellFormat& format, AnnouncedFile& file,
+                         Monitor& monitor);
 
 }  // namespace aerate

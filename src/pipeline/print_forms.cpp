@@ -17,6 +17,7 @@
 #include "pipeline/hollow.h"
 #include "pipeline/lightning_modifiers.h"
 #include "pipeline/print_prediction.h"
+#include "pipeline/scene_of.h"
 #include "pipeline/solid_file.h"
 #include "printing/slicers/text_file.h"
 
@@ -339,6 +340,7 @@ TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& jo
       if (form == PrintForm::voids) tell_of_supports(job, held);
       notices.pass_on(held);
       tried.sliced.push_back(slice_file(form, best.options->output, job, monitor));
+      if (job.wants_scenes) tried.sliced.back().scene = scene_of(best.hollowed, report);
       tried.sliced.back().hollow = std::move(report);
     } catch (const Error& error) {
       if (error.code() != ExitCode::nothing_to_remove) throw;

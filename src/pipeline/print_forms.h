@@ -11,6 +11,7 @@
 #include "pipeline/options.h"
 #include "pipeline/report.h"
 #include "printing/slicers/slicers.h"
+#include "view/scene.h"
 
 namespace aerate {
 
@@ -51,6 +52,7 @@ struct SlicedForm {
   std::filesystem::path gcode;         // in the scratch folder
   std::optional<HollowReport> hollow;  // how the model was made; absent for the solid one
   double slicer_seconds = 0;           // wall-clock time of the slicer's run
+  std::optional<Scene> scene = {};     // of what was hollowed, where one is wanted
 
   std::string name() const { return form == PrintForm::pattern ? pattern : name_of(form); }
 };
@@ -90,6 +92,7 @@ struct FormJob {
   // What the slicer is to call the object; after the model's file, as it does of its own, if empty.
   std::string object_name = {};
   bool supports_everywhere = false;  // the print has them wherever they are wanted, so in voids too
+  bool wants_scenes = false;
 };
 
 // Whether a model is a slicer's project, or may be one.

@@ -15,6 +15,9 @@
 #include "files/output_file.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
+#include "pipeline/prepare.h"
+#include "pipeline/scene_of.h"
+#include "pipeline/view_files.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/ini_settings.h"
 #include "printing/slicers/setting_names.h"
@@ -147,6 +150,30 @@ void slice_what_can_be_sparse(std::vector<SparsePattern> patterns, const FormJob
   add(report, slice_patterns(patterns, report.forms.front(), job, log));
 }
 
+// Of the form that is written, with the slicer's figures.
+Scene scene_of_best(SliceReport& report, const HollowOptions& model, JobLog& log) {
+  SlicedForm& best = report.forms[report.chosen];
+  Scene scene;
+  if (best.scene) {
+    scene = std::move(*best.scene);
+  } else {
+    const PreparedModel read = load_and_inspect(model.model, model.load, log);
+    scene = scene_of(read.mesh, read.input);
+  }
+  const GcodeFigures& solid = report.forms.front().figures;
+  const auto add = [&](const char* name, const std::optional<double>& from, const std::optional<double>& to,
+                       const char* unit, double unit_size) {
+    if (!from || !to) return;
+    const std::string value = fmt::format("{:.1f}", *to / unit_size);
+    scene.figures.push_back({name, report.chosen == 0 ? fmt::format("{} {}", value, unit)
+                                                      : fmt::format("{:.1f} -> {} {}", *from / unit_size, value, unit)});
+  };
+  add("filament", solid.filament_mm, best.figures.filament_mm, "m", 1000);
+  add("print time", solid.seconds, best.figures.seconds, "h", 3600);
+  scene.figures.push_back({"sliced as", fmt::format("{} by {}", best.name(), report.slicer.profile->name)});
+  return scene;
+}
+
 }  // namespace
 
 std::string SliceReport::use(const SlicedForm& form) const {
@@ -170,9 +197,11 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   if (have_post_processing(options.settings))
     log.notice("the post-processing programs of the settings are not run");
   AnnouncedFile pending(options.output, log);
+  ViewFiles views(options.views, log);
   const PrivateFolder scratch(log);
   require_known_settings(options, report.slicer, scratch.path(), log);
   FormJob job{request, report.slicer, settings_with_project(options, scratch.path(), log), scratch.path()};
+  job.wants_scenes = options.views.are_asked_for();
   report.forms.push_back(slice_solid(job, log));
   // What the print is decides what is worth slicing.
   {
@@ -187,7 +216,9 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   if (report.chosen == 0 && (report.forms.size() > unhollowed || report.skipped.size() > skipped))
     log.notice("no hollowed form takes less filament than the solid model, so that is what was written");
 
-  pending.commit_text(read_text(report.best().gcode));
+  write_bytes(read_text(report.best().gcode), pending.file());
+  views.write([&] { return scene_of_best(report, request.hollow, log); }, log);
+  views.commit_with({&pending.file()});
   report.stages = log.finish();
   report.notices = log.notices();
   return report;

@@ -21,6 +21,7 @@ struct SliceModelOptions {
   SlicerSettings settings;
   FormRequest request;
   Comparison comparison = Comparison::lightning;
+  ViewOutputs views;  // of the form that is written
 };
 
 struct SliceReport : FormsReport {
