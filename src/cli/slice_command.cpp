@@ -44,7 +44,10 @@ std::vector<std::string> names_of_patterns() {
 
 struct SliceCommand {
   SliceCommand(CLI::App& command, const ConfigFile& config)
-      : model(command), form(command, config, names_of_patterns()), views(command, "what is sliced"), run_options(command) {
+      : model(command),
+        form(command, config, names_of_patterns()),
+        views(command, "what is sliced"),
+        run_options(command) {
     command
         .add_option("--compare", comparison,
                     "What is sliced beside solid, voids and modifiers: forms (nothing), lightning (the solid "

@@ -42,24 +42,27 @@ ViewOptions::ViewOptions(CLI::App& command, const std::string& what) {
       ->type_name("FILE");
   of_picture_.push_back(
       command
-          .add_option("--picture-cut", cut_,
-                      "Picture: the axis that it is cut across, and where, percent of the model from its low end; "
-                      "0 and 100: not cut (default where most void shows)")
+          .add_option(
+              "--picture-cut", cut_,
+              "Picture: the axis that it is cut across, and where, percent of the model from its low end; "
+              "0 and 100: not cut (default where most void shows)")
           ->check(parsed_by(parse_cut, "is not x, y or z, alone or with a share of 0 to 100, as in y=40%"))
           ->type_name("AXIS[=SHARE%]"));
   of_picture_.push_back(
       command.add_option("--picture-size", size_, "Picture: its width and height in pixels")
-          ->check(parsed_by(parse_picture_size,
-                            fmt::format("is not a width and a height of {} to {} pixels, as in 1000x800, {:g} million "
-                                        "pixels at most",
-                                        kLeastPictureSide, kMostPictureSide, kMostPicturePixels / 1e6)))
+          ->check(parsed_by(
+              parse_picture_size,
+              fmt::format("is not a width and a height of {} to {} pixels, as in 1000x800, {:g} million "
+                          "pixels at most",
+                          kLeastPictureSide, kMostPictureSide, kMostPicturePixels / 1e6)))
           ->type_name("WxH")
           ->capture_default_str());
   of_picture_.push_back(
       command
-          .add_option("--picture-colour", colour_,
-                      "Picture: what the colours of voids' walls say: their radius, or the thickness left to the "
-                      "model's surface")
+          .add_option(
+              "--picture-colour", colour_,
+              "Picture: what the colours of voids' walls say: their radius, or the thickness left to the "
+              "model's surface")
           ->check(CLI::IsMember({"radius", "thickness"}))
           ->type_name("WHAT")
           ->capture_default_str());

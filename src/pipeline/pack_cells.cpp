@@ -33,7 +33,7 @@ void write_pieces(const PreparedModel& model, const SurfaceIndex& surface, const
                                   monitor);
   };
   write_beside(pieces, file, {.mesh = &format, .modifiers = {}, .blockers = {}, .object_name = {}}, check,
-                monitor);
+               monitor);
 }
 
 }  // namespace
@@ -50,8 +50,8 @@ CellFormat cell_format_of(const std::filesystem::path& path) {
 }
 
 WrittenCells write_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
-                        const PackOptions& options, const CellFormat& format, AnnouncedFile& file,
-                        Monitor& monitor) {
+                         const PackOptions& options, const CellFormat& format, AnnouncedFile& file,
+                         Monitor& monitor) {
   monitor.stage("shape");
   const CellPlanes planes = planes_of_cells(model, packing, options.packing.device, monitor);
   WrittenCells result;
@@ -70,8 +70,8 @@ WrittenCells write_cells(const PreparedModel& model, const SurfaceIndex& surface
     write_bytes(text, file.file());
     return result;
   }
-  write_pieces(model, surface, packing, *result.shapes, options, *std::get<const MeshFormat*>(format), file, written,
-               monitor);
+  write_pieces(model, surface, packing, *result.shapes, options, *std::get<const MeshFormat*>(format), file,
+               written, monitor);
   return result;
 }
 

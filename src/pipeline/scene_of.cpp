@@ -47,6 +47,18 @@ std::string size_of(const Mesh& mesh) {
   return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", size.x, size.y, size.z);
 }
 
+// 1234567 -> "1,234,567"
+std::string grouped(std::size_t number) {
+  std::string digits = fmt::format("{}", number);
+  for (std::ptrdiff_t at = std::ssize(digits) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), 1, ',');
+  return digits;
+}
+
+std::string how_many(std::size_t count, const std::string& what) {
+  return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
+}
+
 std::string title_of(const InputFacts& input) {
   return printable(input.path.filename().string());
 }
@@ -82,13 +94,16 @@ void measure_walls(Scene& scene, const kernels::TriangleBvhView& surface) {
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
     if (!scene.voids[i].wall) scene.voids[i].wall = nearest_of(scene.mesh, parts[i], surface).distance;
   });
+  const char* const what = scene.void_use == VoidUse::modifiers ? "modifier"
+                           : scene.void_use == VoidUse::found   ? "hollow"
+                                                                : "void";
   const auto thinnest = std::ranges::min_element(
       scene.voids, [](const SceneVoid& a, const SceneVoid& b) { return *a.wall < *b.wall; });
   if (thinnest == scene.voids.end() || !std::isfinite(*thinnest->wall)) return;
   const auto part = static_cast<std::size_t>(thinnest - scene.voids.begin());
   const Vec3d place = nearest_of(scene.mesh, parts[part], surface).place;
   scene.marks.push_back({MarkKind::thinnest_wall, place,
-                         fmt::format("thinnest wall: {:.2f} mm, beside void {} at {}", *thinnest->wall,
+                         fmt::format("thinnest wall: {:.2f} mm, beside {} {} at {}", *thinnest->wall, what,
                                      thinnest->number, point(place))});
 }
 
@@ -108,8 +123,8 @@ std::vector<SceneVoid> voids_of_cells(const Packing& packing, const CellVoids& c
   tbb::parallel_for(std::size_t{0}, voids.size(), [&](std::size_t i) {
     const CellVoid& cell = cells.voids[i];
     const VolumeMoments moments = volume_moments(cell.surface);
-    const Vec3d place = moments.volume != 0 ? moments.first_moment * (1 / moments.volume)
-                                            : packing.spheres[cell.cell].centre;
+    const Vec3d place =
+        moments.volume != 0 ? moments.first_moment * (1 / moments.volume) : packing.spheres[cell.cell].centre;
     voids[i] = {i + 1, place, packing.spheres[cell.cell].radius, std::abs(moments.volume), std::nullopt};
   });
   return voids;
@@ -153,7 +168,8 @@ Vec3d place_on(const Mesh& mesh, const SolidPart& part, const Ceiling& ceiling, 
     const kernels::Facet facet{to_float(a), to_float(b), to_float(c)};
     if (kernels::winding_detail::line_crossing(facet, x, y) == 0) continue;
     const Vec3d normal = cross(b - a, c - a);
-    if (normal.z != 0) height = std::max(height, a.z - (normal.x * (x - a.x) + normal.y * (y - a.y)) / normal.z);
+    if (normal.z != 0)
+      height = std::max(height, a.z - (normal.x * (x - a.x) + normal.y * (y - a.y)) / normal.z);
   }
   if (height == -kInfinity) height = highest;
   return frame.x * x + frame.y * y + frame.z * height;
@@ -181,11 +197,13 @@ void add_wide_ceilings(Scene& scene, const Roof& roof, const std::string& who) {
   });
   std::vector<Found> found;
   for (const std::vector<Found>& own : by_part) found.insert(found.end(), own.begin(), own.end());
-  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.width > b.width; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.width > b.width; });
   for (const Found& each : found)
-    scene.marks.push_back({MarkKind::ceiling, each.place,
-                           fmt::format("ceiling {:.1f} mm wide in void {} ({} bridges {:g} mm) at {}", each.width,
-                                       scene.voids[each.part].number, who, roof.bridge(), point(each.place))});
+    scene.marks.push_back(
+        {MarkKind::ceiling, each.place,
+         fmt::format("ceiling {:.1f} mm wide in void {} ({} bridges {:g} mm) at {}", each.width,
+                     scene.voids[each.part].number, who, roof.bridge(), point(each.place))});
 }
 
 const char* words_for_voids(const HollowReport& report) {
@@ -203,23 +221,24 @@ void add_figures(Scene& scene, const HollowReport& report) {
                   100 * output.volume_removed / output.volume_before));
   if (!scene.voids.empty())
     add(report.modifiers ? "modifiers" : "voids",
-        fmt::format("{}, radius {}", scene.voids.size(), radii_of(scene.voids)));
+        fmt::format("{}, radius {}", grouped(scene.voids.size()), radii_of(scene.voids)));
   if (report.modifiers) {
     add("infill in them", fmt::format("{:g} %{}", report.modifiers->infill_percent,
                                       report.modifiers->hold_lightning ? " lightning" : ""));
   } else {
     const MaterialUse use = material_use(report);
     add("material", fmt::format("{}{} {:.1f} -> {:.1f} g", report.material.name,
-                                report.print && !use.predicted ? ", if printed solid:" : "", use.mass_before_g,
-                                use.mass_after_g));
+                                report.print && !use.predicted ? ", if printed solid:" : "",
+                                use.mass_before_g, use.mass_after_g));
   }
   if (output.void_count > 0 && std::isfinite(output.clearances.wall))
     add("wall", fmt::format("{:.2f} mm at least (limit {:g})", output.clearances.wall, report.limits.wall));
   if (output.clearances.gap && output.void_count > 1)
     add("gap", fmt::format("{:.2f} mm at least (limit {:g})", *output.clearances.gap, report.limits.gap));
   if (report.drainage)
-    add("drainage", fmt::format("{}, {}", counted(report.drainage->plan.channels.size(), "channel", "channels"),
-                                counted(report.drainage->plan.holes.size(), "escape hole", "escape holes")));
+    add("drainage",
+        fmt::format("{}, {}", counted(report.drainage->plan.channels.size(), "channel", "channels"),
+                    counted(report.drainage->plan.holes.size(), "escape hole", "escape holes")));
   if (output.ceilings)
     add("ceilings", fmt::format("{:.1f} mm wide at most (bridge {:g})", output.ceilings->widest,
                                 report.limits.roof.bridge()));
@@ -243,7 +262,8 @@ std::vector<std::uint32_t> hollow_shells(const Inspection& inspection, const std
   };
   for (std::uint32_t i = 0; i < shells.size(); ++i) {
     if (!(shells[i].volume < -kLeast)) continue;
-    if (std::ranges::any_of(shells, [&](const Shell& other) { return other.volume > 0 && holds(other.box, shells[i].box); }))
+    if (std::ranges::any_of(
+            shells, [&](const Shell& other) { return other.volume > 0 && holds(other.box, shells[i].box); }))
       hollows.push_back(i);
   }
   return hollows;
@@ -253,7 +273,8 @@ std::vector<std::uint32_t> hollow_shells(const Inspection& inspection, const std
 void take_read_mesh(Scene& scene, const Mesh& mesh, const Inspection& inspection) {
   scene.is_closed = inspection.closed();
   scene.void_use = VoidUse::found;
-  const bool has_inward = std::ranges::any_of(inspection.shells, [](const Shell& each) { return each.volume < 0; });
+  const bool has_inward =
+      std::ranges::any_of(inspection.shells, [](const Shell& each) { return each.volume < 0; });
   Solid solid = whole(mesh);
   if (has_inward && scene.is_closed) {
     const ShellLabels labels = label_shells(mesh, EdgeUses(mesh));
@@ -294,7 +315,8 @@ void add_open_edges(Scene& scene, const Mesh& mesh, const EdgeUses& uses) {
   std::stable_sort(rims.begin(), rims.end(),
                    [](const auto& a, const auto& b) { return a.first.diameter > b.first.diameter; });
   for (const auto& [loop, chain] : rims) {
-    SceneMark mark{MarkKind::hole_in_mesh, loop.centre,
+    SceneMark mark{MarkKind::hole_in_mesh,
+                   loop.centre,
                    fmt::format("hole in the surface: {:.3g} mm across, {}, at {}", loop.diameter,
                                counted(loop.edge_count, "open edge", "open edges"), point(loop.centre)),
                    {}};
@@ -355,23 +377,24 @@ void add_figures(Scene& scene, const InspectReport& report) {
     scene.figures.push_back({name, std::move(value)});
   };
   add("model", size_of(scene.mesh));
-  add("triangles", fmt::format("{}", inspection.triangle_count));
+  add("triangles", grouped(inspection.triangle_count));
   add("volume", inspection.closed() ? volume(inspection.filled_volume) : "not defined: the surface is open");
-  add("shells", fmt::format("{}", inspection.shells.size()));
-  add("edges", fmt::format("{} open, {} bad", inspection.open_edges,
-                           inspection.misoriented_edges + inspection.non_manifold_edges));
-  if (!scene.voids.empty()) add("hollows", fmt::format("{} sealed", scene.voids.size()));
-  if (inspection.overlapping_shells > 0) add("overlap", volume(inspection.overlapped_volume));
+  add("shells", grouped(inspection.shells.size()));
+  add("edges", fmt::format("{} open, {} bad", grouped(inspection.open_edges),
+                           grouped(inspection.misoriented_edges + inspection.non_manifold_edges)));
+  if (!scene.voids.empty()) add("hollows", grouped(scene.voids.size()) + " sealed");
+  if (inspection.parts_overlap()) add("overlap", volume(inspection.overlapped_volume));
   if (report.self_intersections)
-    add("crossings", counted(report.self_intersections->pair_count, "pair of triangles", "pairs of triangles"));
+    add("crossings",
+        counted(report.self_intersections->pair_count, "pair of triangles", "pairs of triangles"));
   if (report.drainage) add("drainage", report.drainage->verdict);
   add("use", report.use);
 }
 
 // What ceilings are held against where a model is only looked at.
 ProcessChoice usual_limits(const InspectReport& report) {
-  ProcessChoice choice = limits_under(report.drainage ? report.drainage->inquiry.process : processes().front(), {},
-                                      ProcessCheck::none);
+  ProcessChoice choice = limits_under(
+      report.drainage ? report.drainage->inquiry.process : processes().front(), {}, ProcessCheck::none);
   if (report.drainage) choice.direction = report.drainage->inquiry.direction;
   return choice;
 }
@@ -397,14 +420,16 @@ Scene scene_of(const HollowedModel& hollowed, const HollowReport& report) {
   scene.voids = hollowed.cells ? voids_of_cells(hollowed.packing, *hollowed.cells)
                                : voids_of_spheres(hollowed.packing, hollowed.surface);
   const std::string what = words_for_voids(report);
-  scene.is = fmt::format("{} {}", report.modifiers ? "with" : "hollowed by",
-                         counted(scene.voids.size(), what, what + "s"));
+  scene.is =
+      fmt::format("{} {}", report.modifiers ? "with" : "hollowed by", how_many(scene.voids.size(), what));
+  scene.has_spheres = !hollowed.cells;
   scene.up = hollowed.packing.limits.roof.up;
   if (report.print) scene.layer_height = report.print->settings.layer_height;
   scene.tolerance = hollowed.carved.tolerance;
   if (report.limits.roof.limits_ceilings()) scene.bridge = report.limits.roof.bridge();
   measure_walls(scene, hollowed.surface.bvh());
-  if (scene.bridge && !report.output.ceilings) add_wide_ceilings(scene, report.limits.roof, report.process.process.name);
+  if (scene.bridge && !report.output.ceilings)
+    add_wide_ceilings(scene, report.limits.roof, report.process.process.name);
   add_cups(scene, report.cups);
   add_figures(scene, report);
   return scene;
@@ -432,18 +457,20 @@ Scene scene_of(const PreparedModel& model, const SurfaceIndex& surface, const Pa
   scene.mesh = std::move(solid.mesh);
   scene.parts = std::move(solid.parts);
   const std::string what = cells != nullptr ? "cell" : "sphere";
-  scene.is = fmt::format("packed with {}", counted(scene.voids.size(), what, what + "s"));
+  scene.is = "packed with " + how_many(scene.voids.size(), what);
+  scene.has_spheres = cells == nullptr;
   measure_walls(scene, surface.bvh());
   const double filled = model.inspection.filled_volume;
   double packed = 0;
   for (const SceneVoid& each : scene.voids) packed += each.volume;
-  scene.figures = {{"model", size_of(model.mesh)},
-                   {cells != nullptr ? "cells" : "spheres",
-                    fmt::format("{}, radius {}", scene.voids.size(), radii_of(scene.voids))},
-                   {"packed", fmt::format("{} of {} ({:.1f} %)", volume(packed), volume(filled), 100 * packed / filled)},
-                   {"limits", fmt::format("wall {:g}, gap {:g} mm", report.limits.wall, report.limits.gap)},
-                   {"process", report.process.process.name},
-                   {"packing", report.method}};
+  scene.figures = {
+      {"model", size_of(model.mesh)},
+      {cells != nullptr ? "cells" : "spheres",
+       fmt::format("{}, radius {}", grouped(scene.voids.size()), radii_of(scene.voids))},
+      {"packed", fmt::format("{} of {} ({:.1f} %)", volume(packed), volume(filled), 100 * packed / filled)},
+      {"limits", fmt::format("wall {:g}, gap {:g} mm", report.limits.wall, report.limits.gap)},
+      {"process", report.process.process.name},
+      {"packing", report.method}};
   return scene;
 }
 
@@ -465,7 +492,8 @@ Scene scene_of(const Mesh& mesh, const InspectReport& report) {
   scene.up = limits.direction.up;
   if (!scene.voids.empty()) {
     add_wide_ceilings(scene, packing_limits(limits).roof, limits.process.name);
-    const kernels::HostTriangleBvh outside(scene.mesh.positions, triangles_of(scene.mesh, scene.parts.front()));
+    const kernels::HostTriangleBvh outside(scene.mesh.positions,
+                                           triangles_of(scene.mesh, scene.parts.front()));
     measure_walls(scene, outside.view());
   }
   if (report.drainage) add_drainage_marks(scene, *report.drainage);

@@ -165,8 +165,9 @@ Scene scene_of_best(SliceReport& report, const HollowOptions& model, JobLog& log
                        const char* unit, double unit_size) {
     if (!from || !to) return;
     const std::string value = fmt::format("{:.1f}", *to / unit_size);
-    scene.figures.push_back({name, report.chosen == 0 ? fmt::format("{} {}", value, unit)
-                                                      : fmt::format("{:.1f} -> {} {}", *from / unit_size, value, unit)});
+    scene.figures.push_back({name, report.chosen == 0
+                                       ? fmt::format("{} {}", value, unit)
+                                       : fmt::format("{:.1f} -> {} {}", *from / unit_size, value, unit)});
   };
   add("filament", solid.filament_mm, best.figures.filament_mm, "m", 1000);
   add("print time", solid.seconds, best.figures.seconds, "h", 3600);

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t kPlaces = 31;  // of cuts along an axis
 
-
-
 Vec3d direction_of(CutAxis axis) {
   switch (axis) {
     case CutAxis::x:
@@ -32,7 +30,9 @@ double along(Vec3d p, CutAxis axis) {
 
 // The axes round this one, in order.
 ViewPoint across(Vec3d p, CutAxis axis) {
-  return axis == CutAxis::x ? ViewPoint{p.y, p.z} : axis == CutAxis::y ? ViewPoint{p.z, p.x} : ViewPoint{p.x, p.y};
+  return axis == CutAxis::x   ? ViewPoint{p.y, p.z}
+         : axis == CutAxis::y ? ViewPoint{p.z, p.x}
+                              : ViewPoint{p.x, p.y};
 }
 
 // Areas of a void's sections at evenly spaced places, added up. Each is the sum of triangles from its middle to the lines in which

@@ -28,8 +28,7 @@ double covered(double depth) {
 template <typename ShareAt>
 void cover(Image& image, const PixelBox& box, Colour colour, const ShareAt& share_at) {
   for (int y = box.y0; y <= box.y1; ++y)
-    for (int x = box.x0; x <= box.x1; ++x)
-      image.blend(x, y, colour, share_at(PixelPoint{x + 0.5, y + 0.5}));
+    for (int x = box.x0; x <= box.x1; ++x) image.blend(x, y, colour, share_at(PixelPoint{x + 0.5, y + 0.5}));
 }
 
 }  // namespace
@@ -52,17 +51,15 @@ void fill_rectangle(Image& image, PixelPoint corner, double width, double height
   const auto overlap = [](double middle, double from, double to) {
     return std::clamp(std::min(middle + 0.5, to) - std::max(middle - 0.5, from), 0.0, 1.0);
   };
-  cover(image, box_within(image, corner.x, corner.y, x1, y1), colour, [&](PixelPoint p) {
-    return overlap(p.x, corner.x, x1) * overlap(p.y, corner.y, y1);
-  });
+  cover(image, box_within(image, corner.x, corner.y, x1, y1), colour,
+        [&](PixelPoint p) { return overlap(p.x, corner.x, x1) * overlap(p.y, corner.y, y1); });
 }
 
 void draw_line(Image& image, PixelPoint from, PixelPoint to, double width, Colour colour, double share) {
   const double reach = width / 2 + 1;
   const double dx = to.x - from.x, dy = to.y - from.y, extent = dx * dx + dy * dy;
-  const PixelBox box =
-      box_within(image, std::min(from.x, to.x) - reach, std::min(from.y, to.y) - reach,
-                 std::max(from.x, to.x) + reach, std::max(from.y, to.y) + reach);
+  const PixelBox box = box_within(image, std::min(from.x, to.x) - reach, std::min(from.y, to.y) - reach,
+                                  std::max(from.x, to.x) + reach, std::max(from.y, to.y) + reach);
   cover(image, box, colour, [&](PixelPoint p) {
     const double along =
         extent > 0 ? std::clamp(((p.x - from.x) * dx + (p.y - from.y) * dy) / extent, 0.0, 1.0) : 0.0;

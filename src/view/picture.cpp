@@ -72,8 +72,8 @@ Cut whole_from_marks(const Scene& scene) {
   const Vec3d low = to_double(box.lower), size = to_double(box.upper) - low;
   Cut best;
   double most = -1;
-  for (const Cut& cut : {cut_at(CutAxis::y, 0), cut_at(CutAxis::x, 1), cut_at(CutAxis::x, 0), cut_at(CutAxis::y, 1),
-                         cut_at(CutAxis::z, 1), cut_at(CutAxis::z, 0)}) {
+  for (const Cut& cut : {cut_at(CutAxis::y, 0), cut_at(CutAxis::x, 1), cut_at(CutAxis::x, 0),
+                         cut_at(CutAxis::y, 1), cut_at(CutAxis::z, 1), cut_at(CutAxis::z, 0)}) {
     double near = 0;
     for (const SceneMark& mark : scene.marks) {
       const Vec3d p = mark.place - low;
@@ -103,7 +103,11 @@ Cut cut_for(const Scene& scene, const PictureRequest& request) {
 class Surface {
  public:
   Surface(const Scene& scene, const Camera& camera, const std::vector<Vec3d>& corners, double depth)
-      : scene_(scene), camera_(camera), depth_(depth), rays_(scene.mesh, corners), void_of_(scene.parts.size(), kNone) {
+      : scene_(scene),
+        camera_(camera),
+        depth_(depth),
+        rays_(scene.mesh, corners),
+        void_of_(scene.parts.size(), kNone) {
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < scene.parts.size(); ++i)
       if (scene.parts[i].kind == PartKind::void_surface && count < scene.voids.size()) void_of_[i] = count++;
@@ -129,7 +133,7 @@ class Surface {
     const Vec3d towards = camera_.turned(camera_.to_model({0, 0, 0}) - camera_.to_model({0, 0, 1}));
     is_inside = dot(normal, towards) < 0;
     if (is_inside) normal = -normal;
-    const std::uint32_t of = void_of_[part_of(hit.triangle)];
+    const std::uint32_t of = scene_.has_spheres ? void_of_[part_of(hit.triangle)] : kNone;
     // Facets of spheres are shown as what they stand for.
     if (of != kNone) {
       const SceneVoid& sphere = scene_.voids[of];
@@ -155,11 +159,28 @@ class Surface {
   std::vector<std::uint32_t> void_of_;
 };
 
-// What is left between points of voids' walls and the model's surface.
+// What is left between points of voids' walls and the model's surface, up to `most`: what is thicker is thick enough.
 class WallLeft {
  public:
-  explicit WallLeft(const Scene& scene) : bvh_(scene.mesh.positions, outer_triangles(scene)) {}
-  double at(Vec3d p) const { return std::sqrt(bvh_.view().nearest(p, kInfinity).distance_squared); }
+  WallLeft(const Scene& scene, double most)
+      : bvh_(scene.mesh.positions, outer_triangles(scene)), most_squared_(most * most) {}
+
+  // What is left at a point, and the facet that is nearest to it: one nearby is no farther from the next point than it is.
+  struct Known {
+    std::uint32_t facet = kNone;
+    double left = 0;
+  };
+  // `known`, of any point, becomes that of this one.
+  void find(Vec3d p, Known& known) const {
+    const kernels::TriangleBvhView& bvh = bvh_.view();
+    kernels::NearestFacet nearest{most_squared_, kNone};
+    if (known.facet != kNone) {
+      const double to_it = kernels::distance_squared_to_facet(p, bvh.facets[known.facet]);
+      if (to_it < most_squared_) nearest = {to_it, known.facet};
+    }
+    nearest = bvh.nearer_than(p, nearest);
+    known = {nearest.facet, std::sqrt(nearest.distance_squared)};
+  }
 
  private:
   static std::vector<Triangle> outer_triangles(const Scene& scene) {
@@ -172,7 +193,18 @@ class WallLeft {
     return triangles;
   }
   kernels::HostTriangleBvh bvh_;
+  double most_squared_;
 };
+
+// From the thinnest wall of a void on; nothing where none is known.
+std::optional<ColourRange> range_of_walls(const Scene& scene) {
+  constexpr double kThick = 3, kLeast = 1e-3;
+  double thinnest = kInfinity;
+  for (const SceneVoid& each : scene.voids) thinnest = std::min(thinnest, each.wall.value_or(kInfinity));
+  if (!(thinnest < kInfinity)) return std::nullopt;
+  const double low = std::max(thinnest, kLeast);
+  return ColourRange{.low = low, .high = kThick * low, .is_clipped = true, .is_turned = true};
+}
 
 ColourRange range_of_radii(const Scene& scene) {
   ColourRange range{kInfinity, 0};
@@ -199,27 +231,31 @@ class View {
         y0_(static_cast<int>(layout.view.y)),
         width_(static_cast<int>(layout.view.width)),
         height_(static_cast<int>(layout.view.height)),
-        rows_(scene, lines, height_of_row(height_ * kRowsPerPixel - 1), 1 / (kRowsPerPixel * frame.pixels_per_mm()),
+        rows_(scene, lines, height_of_row(height_ * kRowsPerPixel - 1),
+              1 / (kRowsPerPixel * frame.pixels_per_mm()),
               static_cast<std::size_t>(height_) * kRowsPerPixel) {
-    if (colour == PictureColour::thickness && !scene.voids.empty()) walls_.emplace(scene);
+    const auto walls = colour == PictureColour::thickness ? range_of_walls(scene) : std::nullopt;
+    range_ = walls ? *walls : range_of_radii(scene);
+    if (walls) walls_.emplace(scene, range_.high);
     look();
-    range_ = walls_ ? range_of_walls() : range_of_radii(scene);
   }
 
   void draw(Image& image) const {
     std::vector<Colour> middles(seen_.size(), kPaper);
     tbb::parallel_for(0, height_, [&](int y) {
-      for (int x = 0; x < width_; ++x) middles[index(x, y)] = colour_of(pixel(x, y, 0.5, 0.5), seen_[index(x, y)]);
+      for (int x = 0; x < width_; ++x)
+        middles[index(x, y)] = colour_of(pixel(x, y, 0.5, 0.5), seen_[index(x, y)]);
     });
     tbb::parallel_for(0, height_, [&](int y) {
       for (int x = 0; x < width_; ++x) {
-        const bool is_smooth = !is_edge(middles, x, y);
+        const bool is_smooth = !is_edge(x, y);
         image.set(x0_ + x, y0_ + y, is_smooth ? middles[index(x, y)] : mean_of_samples(x, y));
       }
     });
   }
 
   const ColourRange& range() const { return range_; }
+  bool shows_walls_left() const { return walls_.has_value(); }
   bool shows_voids() const {
     return std::ranges::any_of(seen_, [](const Seen& seen) { return seen.of_void != kNone; });
   }
@@ -245,7 +281,7 @@ class View {
     const SectionSpan* span = nullptr;
     bool is_inside = false;
     double light = 1;
-    double wall = 0;  // left, where it is asked for
+    WallLeft::Known wall;  // where it is asked for
   };
 
   std::size_t index(int x, int y) const {
@@ -267,7 +303,8 @@ class View {
     return span_at(row_at(on_picture.y), view.x);
   }
 
-  Seen seen_at(PixelPoint on_picture) const {
+  // `known`: of a point nearby, if any
+  Seen seen_at(PixelPoint on_picture, WallLeft::Known& known) const {
     Seen seen;
     const ViewPoint p = frame_.in_view(on_picture);
     seen.span = span_at(row_at(on_picture.y), p.x);
@@ -288,25 +325,19 @@ class View {
     const double direct = std::max(dot(normal, kTowardsLight), 0.0);
     const double depth = scene_.parts[part].kind == PartKind::outer ? 0.12 : 0.3;
     seen.light = (kAmbient + (1.08 - kAmbient) * direct) * (1 - depth * surface_.depth_share(*hit));
-    if (walls_ && seen.of_void != kNone) seen.wall = walls_->at(surface_.place_of(p, *hit));
+    if (walls_ && seen.of_void != kNone) {
+      walls_->find(surface_.place_of(p, *hit), known);
+      seen.wall = known;
+    }
     return seen;
   }
 
   void look() {
     seen_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
     tbb::parallel_for(0, height_, [&](int y) {
-      for (int x = 0; x < width_; ++x) seen_[index(x, y)] = seen_at(pixel(x, y, 0.5, 0.5));
+      WallLeft::Known known;
+      for (int x = 0; x < width_; ++x) seen_[index(x, y)] = seen_at(pixel(x, y, 0.5, 0.5), known);
     });
-  }
-
-  ColourRange range_of_walls() const {
-    ColourRange range{kInfinity, 0};
-    for (const Seen& seen : seen_) {
-      if (seen.of_void == kNone || seen.span != nullptr) continue;
-      range.low = std::min(range.low, seen.wall);
-      range.high = std::max(range.high, seen.wall);
-    }
-    return range.low <= range.high ? range : ColourRange{};
   }
 
   Colour colour_of(PixelPoint on_picture, const Seen& seen) const {
@@ -324,7 +355,8 @@ class View {
       case SectionSpan::Kind::modifier:
         break;
     }
-    return mixed(mixed(kPaper, colour_of_void(seen), 0.55), kHatch, hatch_share(on_picture, layout_.unit, true));
+    return mixed(mixed(kPaper, colour_of_void(seen), 0.55), kHatch,
+                 hatch_share(on_picture, layout_.unit, true));
   }
 
   Colour colour_of_wall(PixelPoint on_picture, const Seen& seen) const {
@@ -345,8 +377,8 @@ class View {
 
   Colour colour_of_void(const Seen& seen) const {
     // In a modifier's cut face there is no wall to measure.
-    if (walls_) return seen.span != nullptr ? kOuter : scale_colour(range_.share_of(seen.wall));
-    return scale_colour(range_.share_of(scene_.voids[seen.of_void].radius));
+    if (walls_) return seen.span != nullptr ? kOuter : range_.colour_of(seen.wall.left);
+    return range_.colour_of(scene_.voids[seen.of_void].radius);
   }
 
   static Colour lit(Colour colour, double light) {
@@ -357,18 +389,17 @@ class View {
   }
 
   // Whether what is seen changes within the pixel or beside it.
-  bool is_edge(const std::vector<Colour>& middles, int x, int y) const {
+  bool is_edge(int x, int y) const {
     const Seen& here = seen_[index(x, y)];
     if (scene_.is_closed && changes_within(x, y)) return true;
     if (here.span != nullptr) return false;
-    constexpr int kVisible = 14;
+    constexpr double kVisible = 0.03;  // of light
     for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
       if (x + dx < 0 || y + dy < 0 || x + dx >= width_ || y + dy >= height_) continue;
       const Seen& there = seen_[index(x + dx, y + dy)];
       if (there.span != nullptr) continue;
       if (there.part != here.part) return true;
-      const Colour a = middles[index(x, y)], b = middles[index(x + dx, y + dy)];
-      if (std::abs(a.red - b.red) + std::abs(a.green - b.green) + std::abs(a.blue - b.blue) > kVisible) return true;
+      if (std::abs(there.light - here.light) > kVisible) return true;
     }
     return false;
   }
@@ -388,16 +419,19 @@ class View {
 
   Colour mean_of_samples(int x, int y) const {
     int red = 0, green = 0, blue = 0;
+    WallLeft::Known known = seen_[index(x, y)].wall;
     for (int sub = 0; sub < kRowsPerPixel; ++sub) {
       const PixelPoint p = pixel(x, y, kAside[static_cast<std::size_t>(sub)], (sub + 0.5) / kRowsPerPixel);
-      const Seen seen = seen_at(p);
+      const Seen seen = seen_at(p, known);
       // Lines of hatching are smooth about the middle.
       const Colour colour = colour_of(seen.span != nullptr ? pixel(x, y, 0.5, 0.5) : p, seen);
       red += colour.red;
       green += colour.green;
       blue += colour.blue;
     }
-    const auto mean = [](int sum) { return static_cast<std::uint8_t>((sum + kRowsPerPixel / 2) / kRowsPerPixel); };
+    const auto mean = [](int sum) {
+      return static_cast<std::uint8_t>((sum + kRowsPerPixel / 2) / kRowsPerPixel);
+    };
     return {mean(red), mean(green), mean(blue)};
   }
 
@@ -452,8 +486,14 @@ class MarkNumbers {
   PixelPoint free_beside(PixelPoint place) const {
     const double unit = layout_.unit;
     for (const double away : {26.0, 44.0, 64.0})
-      for (const auto& [dx, dy] : {std::pair{0.7, -0.7}, {-0.7, -0.7}, {1.0, 0.0}, {-1.0, 0.0},
-                                   {0.7, 0.7}, {-0.7, 0.7}, {0.0, -1.0}, {0.0, 1.0}}) {
+      for (const auto& [dx, dy] : {std::pair{0.7, -0.7},
+                                   {-0.7, -0.7},
+                                   {1.0, 0.0},
+                                   {-1.0, 0.0},
+                                   {0.7, 0.7},
+                                   {-0.7, 0.7},
+                                   {0.0, -1.0},
+                                   {0.0, 1.0}}) {
         const PixelPoint at{place.x + away * dx * unit, place.y + away * dy * unit};
         const bool is_free = std::ranges::none_of(taken_, [&](PixelPoint other) {
           const double ox = other.x - at.x, oy = other.y - at.y;
@@ -528,7 +568,7 @@ Picture draw_picture(const Scene& scene, const PictureRequest& request) {
                 {.scene = scene,
                  .cut = cut,
                  .frame = frame,
-                 .colour = request.colour,
+                 .colour = view.shows_walls_left() ? PictureColour::thickness : PictureColour::radius,
                  .range = view.range(),
                  .shows_voids = view.shows_voids(),
                  .shows_inside = view.shows_inside(),

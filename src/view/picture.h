@@ -17,14 +17,15 @@ enum class PictureColour {
   thickness,  // what is left between a point of a void's wall and the model's surface
 };
 
-inline constexpr int kLeastPictureSide = 160;    // pixels
-inline constexpr int kMostPictureSide = 16384;   // pixels
+inline constexpr int kLeastPictureSide = 160;   // pixels
+inline constexpr int kMostPictureSide = 16384;  // pixels
 inline constexpr double kMostPicturePixels = 64e6;
 
 struct PictureRequest {
   PictureColour colour = PictureColour::radius;
   std::optional<CutAxis> axis;  // of the cut; any if not given
-  std::optional<double> share;  // with an axis: where, of the model's extent, 0 to 1; where most void shows if not given
+  std::optional<double>
+      share;  // with an axis: where, of the model's extent, 0 to 1; where most void shows if not given
   int width = 1000, height = 800;  // pixels
 };
 

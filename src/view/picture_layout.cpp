@@ -34,8 +34,19 @@ double low_end(const Box3f& box, CutAxis axis) {
   return axis == CutAxis::x ? low.x : axis == CutAxis::y ? low.y : low.z;
 }
 
+// From where it is looked at, by name where that has one.
+std::string side_of(const Scene& scene, const Cut& cut) {
+  const std::string along = fmt::format("{}{}", cut.looks_along_axis ? "+" : "-", name_of(cut.axis));
+  if (!(scene.up == Vec3d{0, 0, 1})) return "seen along " + along;
+  const bool is_along = cut.looks_along_axis;
+  const char* const side = cut.axis == CutAxis::x   ? (is_along ? "the left" : "the right")
+                           : cut.axis == CutAxis::y ? (is_along ? "the front" : "behind")
+                                                    : (is_along ? "below" : "above");
+  return fmt::format("seen from {} (along {})", side, along);
+}
+
 std::string describe(const Scene& scene, const Cut& cut) {
-  const std::string seen = fmt::format("seen along {}{}", cut.looks_along_axis ? "+" : "-", name_of(cut.axis));
+  const std::string seen = side_of(scene, cut);
   if (cut.is_whole()) return "not cut, " + seen;
   const Box3f box = bounding_box(scene.mesh);
   const double place = low_end(box, cut.axis) + cut.share * extent_along(box, cut.axis);
@@ -51,7 +62,8 @@ void draw_title(Image& image, const PictureLayout& layout, const CaptionContent&
   const double after = width_of_text(name, title) + 14 * unit;
   if (after < width) {
     const Lettering is{11 * unit, kInk, false};
-    draw_text(image, {kMargin * unit + after, 32 * unit}, text_that_fits(content.scene.is, width - after, is), is);
+    draw_text(image, {kMargin * unit + after, 32 * unit}, text_that_fits(content.scene.is, width - after, is),
+              is);
   }
   const Lettering faint = layout.body(kFaint);
   draw_text(image, {kMargin * unit, 54 * unit},
@@ -74,7 +86,8 @@ void draw_scale_bar(Image& image, const PictureLayout& layout, const PictureFram
   const double field = length * scale / kFields;
   fill_rectangle(image, {x, y}, length * scale, thick, kInk);
   for (int i = 1; i < kFields; i += 2)
-    fill_rectangle(image, {x + i * field + 0.8 * unit, y + unit}, field - 1.6 * unit, thick - 2 * unit, kPaper);
+    fill_rectangle(image, {x + i * field + 0.8 * unit, y + unit}, field - 1.6 * unit, thick - 2 * unit,
+                   kPaper);
   draw_text(image, {x + length * scale + 8 * unit, y + thick + 1.5 * unit}, fmt::format("{:g} mm", length),
             layout.body());
 }
@@ -85,9 +98,7 @@ class Legend {
   Legend(Image& image, const PictureLayout& layout)
       : image_(image), layout_(layout), unit_(layout.unit), y_(layout.legend.y) {}
 
-  bool has_room(double units) const {
-    return y_ + units * unit_ <= layout_.legend.y + layout_.legend.height;
-  }
+  bool has_room(double units) const { return y_ + units * unit_ <= layout_.legend.y + layout_.legend.height; }
 
   void colour_bar(const std::string& what, const ColourRange& range) {
     if (!has_room(178)) return;
@@ -97,14 +108,16 @@ class Legend {
     const int steps = static_cast<int>(height);
     for (int i = 0; i < steps; ++i)
       fill_rectangle(image_, {x, y_ + height * i / steps}, width, height / steps + 0.01,
-                     scale_colour(range.high > range.low ? 1 - (i + 0.5) / steps : 0.5));
+                     range.colour_of(range.high - (range.high - range.low) * (i + 0.5) / steps));
     const int ticks = range.high > range.low ? 4 : 0;
     for (int tick = 0; tick <= ticks; ++tick) {
       const double share = ticks > 0 ? static_cast<double>(tick) / ticks : 0.5;
       const double value = range.low + share * (range.high - range.low);
       const double at = y_ + height * (1 - share);
       draw_line(image_, {x + width, at}, {x + width + 5 * unit_, at}, unit_, kInk);
-      draw_text(image_, {x + width + 10 * unit_, at + 4.5 * unit_}, fmt::format("{:.3g}", value), layout_.body());
+      draw_text(image_, {x + width + 10 * unit_, at + 4.5 * unit_},
+                fmt::format("{:.3g}{}", value, range.is_clipped && tick == ticks ? " and more" : ""),
+                layout_.body());
     }
     y_ += height + 26 * unit_;
   }
@@ -158,7 +171,7 @@ const char* words_for_voids(VoidUse use) {
     case VoidUse::modifiers:
       return "modifier";
     case VoidUse::packed:
-      return "packed";
+      return "sphere";
     case VoidUse::found:
       return "hollow";
   }
@@ -194,7 +207,8 @@ void draw_legend(Image& image, const PictureLayout& layout, const CaptionContent
   if (scene.is_closed && !content.cut.is_whole()) {
     const bool stays = scene.void_use == VoidUse::modifiers;
     legend.swatch(kSolid, Legend::Pattern::hatched, kHatch, stays ? "model" : "solid");
-    if (stays) legend.swatch(mixed(kPaper, scale_colour(0.5), 0.55), Legend::Pattern::crossed, kHatch, "modifier");
+    if (stays)
+      legend.swatch(mixed(kPaper, scale_colour(0.5), 0.55), Legend::Pattern::crossed, kHatch, "modifier");
   }
   if (has_part(scene, PartKind::channel)) legend.swatch(kChannel, Legend::Pattern::hatched, kInk, "channel");
   if (has_part(scene, PartKind::hole)) legend.swatch(kHole, Legend::Pattern::crossed, kInk, "escape hole");
@@ -211,8 +225,8 @@ void draw_legend(Image& image, const PictureLayout& layout, const CaptionContent
 void draw_figures(Image& image, const PictureLayout& layout, const Scene& scene) {
   const double unit = layout.unit;
   const Lettering faint = layout.body(kFaint), body = layout.body();
-  fill_rectangle(image, {kMargin * unit, layout.caption.y + 4 * unit}, image.width() - 2 * kMargin * unit, unit,
-                 kFaint);
+  fill_rectangle(image, {kMargin * unit, layout.caption.y + 4 * unit}, image.width() - 2 * kMargin * unit,
+                 unit, kFaint);
   double names = 0;
   for (const SceneFigure& figure : scene.figures) names = std::max(names, width_of_text(figure.name, faint));
   const double width = layout.caption.width / 2, bottom = layout.caption.y + layout.caption.height;
@@ -224,18 +238,19 @@ void draw_figures(Image& image, const PictureLayout& layout, const Scene& scene)
     if (y > bottom) continue;
     draw_text(image, {x, y}, scene.figures[i].name, faint);
     const double indent = names + 10 * unit;
-    draw_text(image, {x + indent, y}, text_that_fits(scene.figures[i].value, width - indent - 10 * unit, body),
-              body);
+    draw_text(image, {x + indent, y},
+              text_that_fits(scene.figures[i].value, width - indent - 10 * unit, body), body);
   }
   double y = first + layout.line_height() * static_cast<double>(rows);
   for (std::size_t i = 0; i < layout.marks && y <= bottom; ++i, y += layout.line_height()) {
-    draw_mark_number(image, {layout.caption.x + 8 * unit, y - 4.5 * unit}, i + 1, scene.marks[i].kind, false, layout);
+    draw_mark_number(image, {layout.caption.x + 8 * unit, y - 4.5 * unit}, i + 1, scene.marks[i].kind, false,
+                     layout);
     const bool is_last = i + 1 == layout.marks && layout.marks < scene.marks.size();
     const std::string more =
         is_last ? fmt::format(" (and {} more)", scene.marks.size() - layout.marks) : std::string();
     const double room = layout.caption.width - 22 * unit - width_of_text(more, body);
-    draw_text(image, {layout.caption.x + 22 * unit, y}, text_that_fits(scene.marks[i].text, room, body) + more,
-              body);
+    draw_text(image, {layout.caption.x + 22 * unit, y},
+              text_that_fits(scene.marks[i].text, room, body) + more, body);
   }
 }
 

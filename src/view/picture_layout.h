@@ -21,8 +21,13 @@ struct PixelRoom {
 // Values of the scale of colours at its ends.
 struct ColourRange {
   double low = 0, high = 0;  // mm
+  bool is_clipped = false;   // there are larger ones
+  bool is_turned = false;    // small values stand out
 
-  double share_of(double value) const { return high > low ? (value - low) / (high - low) : 0.5; }
+  Colour colour_of(double value) const {
+    const double share = high > low ? (value - low) / (high - low) : 0.5;
+    return scale_colour(is_turned ? 1 - share : share);
+  }
 };
 
 struct PictureLayout {
@@ -45,8 +50,8 @@ struct CaptionContent {
   const PictureFrame& frame;
   PictureColour colour = PictureColour::radius;
   ColourRange range;
-  bool shows_voids = false;     // is any coloured wall to be seen
-  bool shows_inside = false;    // of a surface that is not closed
+  bool shows_voids = false;   // is any coloured wall to be seen
+  bool shows_inside = false;  // of a surface that is not closed
   bool has_hidden_marks = false;
 };
 void draw_captions(Image& image, const PictureLayout& layout, const CaptionContent& content);

@@ -1,10 +1,9 @@
 #include "view/png_bytes.h"
 
-#include <png.h>
-
 #include <csetjmp>
 #include <cstddef>
 #include <new>
+#include <png.h>
 
 #include "core/error.h"
 
@@ -34,14 +33,15 @@ void flush(png_structp /*png*/) {}
 bool write(png_structp png, png_infop info, const Image& image, std::string& bytes) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;  // NOLINT(cert-err52-cpp)
   png_set_write_fn(png, &bytes, append, flush);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width()), static_cast<png_uint_32>(image.height()), 8,
-               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width()), static_cast<png_uint_32>(image.height()),
+               8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
   const auto width = static_cast<std::size_t>(image.width());
   static_assert(sizeof(Colour) == 3);
   for (int y = 0; y < image.height(); ++y)
-    png_write_row(png, reinterpret_cast<png_const_bytep>(image.pixels().data() +
-                                                         static_cast<std::size_t>(y) * width));
+    png_write_row(
+        png, reinterpret_cast<png_const_bytep>(image.pixels().data() + static_cast<std::size_t>(y) * width));
   png_write_end(png, nullptr);
   return true;
 }

@@ -24,10 +24,10 @@ enum class VoidUse {
 
 // A void, as a part of the mesh. Those of a scene follow each other as its parts of that kind do.
 struct SceneVoid {
-  std::size_t number = 1;      // in the result, from 1
-  Vec3d place{0, 0, 0};        // its centre: of its sphere, else of its volume
-  double radius = 0;           // of its sphere, or of the sphere whose cell it is; else of a ball of its volume
-  double volume = 0;           // of its sphere with its roof, or of the cell; mm3
+  std::size_t number = 1;  // in the result, from 1
+  Vec3d place{0, 0, 0};    // its centre: of its sphere, else of its volume
+  double radius = 0;       // of its sphere, or of the sphere whose cell it is; else of a ball of its volume
+  double volume = 0;       // of its sphere with its roof, or of the cell; mm3
   std::optional<double> wall;  // between it and the model's surface
 };
 
@@ -68,6 +68,7 @@ struct Scene {
   // Whether winding numbers say what is solid. Else there is a surface and nothing more.
   bool is_closed = true;
   VoidUse void_use = VoidUse::removed;
+  bool has_spheres = false;  // voids are spheres with the roofs that they take
   std::vector<SceneVoid> voids;
   std::vector<SceneMark> marks;
   std::vector<SceneFigure> figures;

@@ -105,8 +105,8 @@ SectionRows::SectionRows(const Scene& scene, const std::vector<SectionLine>& lin
 }
 
 const SectionSpan* span_at(const std::vector<SectionSpan>& row, double x) {
-  const auto after = std::upper_bound(row.begin(), row.end(), x,
-                                      [](double value, const SectionSpan& span) { return value < span.from; });
+  const auto after = std::upper_bound(
+      row.begin(), row.end(), x, [](double value, const SectionSpan& span) { return value < span.from; });
   if (after == row.begin()) return nullptr;
   const SectionSpan& span = *(after - 1);
   return x < span.to ? &span : nullptr;

@@ -12,7 +12,7 @@ namespace aerate {
 
 // Where a triangle of a part meets the plane of a cut, in view coordinates. Solid is on one side of all lines of a scene.
 struct SectionLine {
-  ViewPoint from, to;     // mm
+  ViewPoint from, to;      // mm
   std::uint32_t part = 0;  // of the scene
 };
 
