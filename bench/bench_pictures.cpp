@@ -54,7 +54,8 @@ int run(const Arguments& arguments) {
       PictureRequest request;
       request.colour = colour;
       std::optional<Picture> picture;
-      const double draw_seconds = seconds_of([&] { picture.emplace(draw_picture(*scene, request)); });
+      const double draw_seconds =
+          seconds_of([&] { picture.emplace(draw_picture(*scene, request, monitor)); });
       std::string bytes;
       const double png_seconds = seconds_of([&] { bytes = png_of(picture->image); });
       fmt::print("{} {} {} {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {}\n",

@@ -96,7 +96,9 @@ void measure_walls(Scene& scene, const kernels::TriangleBvhView& surface) {
   });
   const char* const what = scene.void_use == VoidUse::modifiers ? "modifier"
                            : scene.void_use == VoidUse::found   ? "hollow"
-                                                                : "void";
+                           : scene.void_use == VoidUse::removed ? "void"
+                           : scene.has_spheres                  ? "sphere"
+                                                                : "cell";
   const auto thinnest = std::ranges::min_element(
       scene.voids, [](const SceneVoid& a, const SceneVoid& b) { return *a.wall < *b.wall; });
   if (thinnest == scene.voids.end() || !std::isfinite(*thinnest->wall)) return;
@@ -378,10 +380,12 @@ void add_figures(Scene& scene, const InspectReport& report) {
   };
   add("model", size_of(scene.mesh));
   add("triangles", grouped(inspection.triangle_count));
-  add("volume", inspection.closed() ? volume(inspection.filled_volume) : "not defined: the surface is open");
+  add("volume",
+      inspection.closed() ? volume(inspection.filled_volume) : "not defined: the surface is not closed");
   add("shells", grouped(inspection.shells.size()));
-  add("edges", fmt::format("{} open, {} bad", grouped(inspection.open_edges),
-                           grouped(inspection.misoriented_edges + inspection.non_manifold_edges)));
+  add("edges",
+      fmt::format("{} open, {} misoriented, {} with more than 2 triangles", grouped(inspection.open_edges),
+                  grouped(inspection.misoriented_edges), grouped(inspection.non_manifold_edges)));
   if (!scene.voids.empty()) add("hollows", grouped(scene.voids.size()) + " sealed");
   if (inspection.parts_overlap()) add("overlap", volume(inspection.overlapped_volume));
   if (report.self_intersections)

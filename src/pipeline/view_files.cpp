@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "core/error.h"
+#include "view/picture.h"
 #include "view/png_bytes.h"
 
 namespace aerate {
@@ -30,7 +31,7 @@ void ViewFiles::write(const std::function<Scene()>& make_scene, Monitor& monitor
   const Scene scene = make_scene();
   monitor.check_interrupted();
   if (picture_) {
-    const Picture picture = draw_picture(scene, outputs_.picture->request);
+    const Picture picture = draw_picture(scene, outputs_.picture->request, monitor);
     write_bytes(png_of(picture.image), picture_->file());
   }
   monitor.check_interrupted();

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "view/picture.h"
+#include "view/picture_request.h"
 
 namespace aerate {
 

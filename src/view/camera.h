@@ -4,13 +4,12 @@
 
 #include "core/mesh.h"
 #include "kernels/vec.h"
+#include "view/picture_request.h"
 #include "view/scene.h"
 
 // From where a scene is looked at, and how it is cut.
 
 namespace aerate {
-
-enum class CutAxis { x, y, z };
 
 // A plane across an axis of the model, and the side of it from which one looks: what lies before it is cut away.
 struct Cut {

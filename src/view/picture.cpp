@@ -66,24 +66,38 @@ PictureFrame frame_for(const Extent& extent, const Camera& camera, const PixelRo
   return {camera, {(extent.x0 + extent.x1) / 2, (extent.y0 + extent.y1) / 2}, room.middle(), scale};
 }
 
-// The whole model from the side near which most of what is marked is.
-Cut whole_from_marks(const Scene& scene) {
+// Some points of what is wrong with a model.
+std::vector<Vec3d> points_of_defects(const Scene& scene) {
+  constexpr std::size_t kMostPoints = 256;
+  std::vector<Vec3d> points;
+  for (const SceneMark& mark : scene.marks) {
+    if (!is_defect(mark.kind)) continue;
+    if (mark.lines.empty()) points.push_back(mark.place);
+    for (const auto& [from, to] : mark.lines) points.push_back((from + to) * 0.5);
+  }
+  const std::size_t step = points.size() / kMostPoints + 1;
+  std::vector<Vec3d> some;
+  for (std::size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
+  return some;
+}
+
+// The whole model from the side from which most of what is wrong is seen, from the front before others.
+Cut whole_with_defects(const Scene& scene) {
   const Box3f box = bounding_box(scene.mesh);
-  const Vec3d low = to_double(box.lower), size = to_double(box.upper) - low;
+  const double size = length(to_double(box.upper) - to_double(box.lower));
+  const LineOfSight sight(scene.mesh);
+  const std::vector<Vec3d> points = points_of_defects(scene);
   Cut best;
-  double most = -1;
-  for (const Cut& cut : {cut_at(CutAxis::y, 0), cut_at(CutAxis::x, 1), cut_at(CutAxis::x, 0),
-                         cut_at(CutAxis::y, 1), cut_at(CutAxis::z, 1), cut_at(CutAxis::z, 0)}) {
-    double near = 0;
-    for (const SceneMark& mark : scene.marks) {
-      const Vec3d p = mark.place - low;
-      const double share = cut.axis == CutAxis::x   ? p.x / std::max(size.x, 1e-9)
-                           : cut.axis == CutAxis::y ? p.y / std::max(size.y, 1e-9)
-                                                    : p.z / std::max(size.z, 1e-9);
-      near += cut.share > 0 ? share : 1 - share;
-    }
-    if (near <= most + 1e-9) continue;
-    most = near;
+  std::ptrdiff_t most = -1;
+  for (const Cut& cut : {cut_at(CutAxis::y, 0), cut_at(CutAxis::y, 1), cut_at(CutAxis::x, 1),
+                         cut_at(CutAxis::x, 0), cut_at(CutAxis::z, 1), cut_at(CutAxis::z, 0)}) {
+    const Camera camera(box, cut, scene.up);
+    const Vec3d towards = normalised(camera.to_model({0, 0, 0}) - camera.to_model({0, 0, 1}));
+    constexpr double kOff = 1e-4;  // of its size, to be clear of the surface itself
+    const auto seen = std::ranges::count_if(
+        points, [&](Vec3d p) { return sight.is_free(p + towards * (kOff * size), towards); });
+    if (seen <= most) continue;
+    most = seen;
     best = cut;
   }
   return best;
@@ -95,7 +109,7 @@ Cut cut_for(const Scene& scene, const PictureRequest& request) {
   if (request.axis) return cut_with_most_void(scene, std::span(&*request.axis, 1));
   const bool has_defects =
       std::ranges::any_of(scene.marks, [](const SceneMark& mark) { return is_defect(mark.kind); });
-  if (scene.voids.empty() && has_defects) return whole_from_marks(scene);
+  if (scene.voids.empty() && has_defects) return whole_with_defects(scene);
   return cut_with_most_void(scene, kAll);
 }
 
@@ -218,11 +232,21 @@ ColourRange range_of_radii(const Scene& scene) {
   return range;
 }
 
+// Calls f(row) for every row of a view, and asks the monitor between pieces.
+template <typename F>
+void for_each_row(int count, Monitor& monitor, const F& f) {
+  constexpr int kAtOnce = 128;
+  for (int first = 0; first < count; first += kAtOnce) {
+    monitor.check_interrupted();
+    tbb::parallel_for(first, std::min(count, first + kAtOnce), f);
+  }
+}
+
 // What is seen of the model, pixel by pixel.
 class View {
  public:
   View(const Scene& scene, PictureColour colour, const PictureFrame& frame, const PictureLayout& layout,
-       const Surface& surface, const std::vector<SectionLine>& lines)
+       const Surface& surface, const std::vector<SectionLine>& lines, Monitor& monitor)
       : scene_(scene),
         frame_(frame),
         layout_(layout),
@@ -237,16 +261,16 @@ class View {
     const auto walls = colour == PictureColour::thickness ? range_of_walls(scene) : std::nullopt;
     range_ = walls ? *walls : range_of_radii(scene);
     if (walls) walls_.emplace(scene, range_.high);
-    look();
+    look(monitor);
   }
 
-  void draw(Image& image) const {
+  void draw(Image& image, Monitor& monitor) const {
     std::vector<Colour> middles(seen_.size(), kPaper);
-    tbb::parallel_for(0, height_, [&](int y) {
+    for_each_row(height_, monitor, [&](int y) {
       for (int x = 0; x < width_; ++x)
         middles[index(x, y)] = colour_of(pixel(x, y, 0.5, 0.5), seen_[index(x, y)]);
     });
-    tbb::parallel_for(0, height_, [&](int y) {
+    for_each_row(height_, monitor, [&](int y) {
       for (int x = 0; x < width_; ++x) {
         const bool is_smooth = !is_edge(x, y);
         image.set(x0_ + x, y0_ + y, is_smooth ? middles[index(x, y)] : mean_of_samples(x, y));
@@ -332,9 +356,9 @@ class View {
     return seen;
   }
 
-  void look() {
+  void look(Monitor& monitor) {
     seen_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-    tbb::parallel_for(0, height_, [&](int y) {
+    for_each_row(height_, monitor, [&](int y) {
       WallLeft::Known known;
       for (int x = 0; x < width_; ++x) seen_[index(x, y)] = seen_at(pixel(x, y, 0.5, 0.5), known);
     });
@@ -549,7 +573,7 @@ Colour scale_colour(double share) {
   return mixed(kViridis[below], kViridis[below + 1], place - static_cast<double>(below));
 }
 
-Picture draw_picture(const Scene& scene, const PictureRequest& request) {
+Picture draw_picture(const Scene& scene, const PictureRequest& request, Monitor& monitor) {
   const Cut cut = cut_for(scene, request);
   const Camera camera(bounding_box(scene.mesh), cut, scene.up);
   const std::vector<Vec3d> corners = corners_in_view(scene.mesh, camera);
@@ -558,10 +582,10 @@ Picture draw_picture(const Scene& scene, const PictureRequest& request) {
   const PictureLayout layout = layout_of(scene, request);
   const PictureFrame frame = frame_for(extent, camera, layout.view);
   const Surface surface(scene, camera, corners, extent.depth);
-  const View view(scene, request.colour, frame, layout, surface, lines);
+  const View view(scene, request.colour, frame, layout, surface, lines, monitor);
 
   Picture picture{Image(request.width, request.height, kPaper), frame, cut};
-  view.draw(picture.image);
+  view.draw(picture.image, monitor);
   draw_section(picture.image, scene, frame, layout, lines);
   const bool has_hidden_marks = draw_marks(picture.image, scene, frame, layout, view);
   draw_captions(picture.image, layout,

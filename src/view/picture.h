@@ -1,33 +1,16 @@
 #pragma once
 
-#include <optional>
-
+#include "core/monitor.h"
 #include "kernels/vec.h"
 #include "view/camera.h"
 #include "view/image.h"
+#include "view/picture_request.h"
 #include "view/scene.h"
 
 // A scene as a picture: the model cut open and lit, what is solid in the plane of the cut hatched, void walls coloured, marks
 // at their places, and figures below.
 
 namespace aerate {
-
-enum class PictureColour {
-  radius,     // of each void
-  thickness,  // what is left between a point of a void's wall and the model's surface
-};
-
-inline constexpr int kLeastPictureSide = 160;   // pixels
-inline constexpr int kMostPictureSide = 16384;  // pixels
-inline constexpr double kMostPicturePixels = 64e6;
-
-struct PictureRequest {
-  PictureColour colour = PictureColour::radius;
-  std::optional<CutAxis> axis;  // of the cut; any if not given
-  std::optional<double>
-      share;  // with an axis: where, of the model's extent, 0 to 1; where most void shows if not given
-  int width = 1000, height = 800;  // pixels
-};
 
 // Where things are on a picture.
 class PictureFrame {
@@ -60,8 +43,8 @@ struct Picture {
   Cut cut;
 };
 
-// The same bytes for any number of threads.
-Picture draw_picture(const Scene& scene, const PictureRequest& request);
+// The same bytes for any number of threads. Throws InterruptedError.
+Picture draw_picture(const Scene& scene, const PictureRequest& request, Monitor& monitor);
 
 // What the picture is drawn in.
 namespace picture_colours {

@@ -105,10 +105,9 @@ class Legend {
     text(what, 0);
     y_ += 8 * unit_;
     const double height = 130 * unit_, width = 18 * unit_, x = layout_.legend.x;
-    const int steps = static_cast<int>(height);
-    for (int i = 0; i < steps; ++i)
-      fill_rectangle(image_, {x, y_ + height * i / steps}, width, height / steps + 0.01,
-                     range.colour_of(range.high - (range.high - range.low) * (i + 0.5) / steps));
+    for (int row = static_cast<int>(y_); row < static_cast<int>(y_ + height); ++row)
+      fill_rectangle(image_, {x, static_cast<double>(row)}, width, 1,
+                     range.colour_of(range.high - (range.high - range.low) * (row + 0.5 - y_) / height));
     const int ticks = range.high > range.low ? 4 : 0;
     for (int tick = 0; tick <= ticks; ++tick) {
       const double share = ticks > 0 ? static_cast<double>(tick) / ticks : 0.5;

@@ -35,7 +35,55 @@ struct DepthMetric {
   }
 };
 
+// The same along any ray: whether there is a facet at all.
+struct BlockedMetric {
+  Vec3d from, direction;
+  const kernels::View<const kernels::Facet>& facets;
+  bool is_blocked = false;
+
+  double bound(const Box3f& box) const {
+    double first = 0, last = kInfinity;
+    const auto narrow = [&](double start, double step, double low, double high) {
+      if (step == 0) {
+        if (start < low || start > high) last = -1;
+        return;
+      }
+      const double a = (low - start) / step, b = (high - start) / step;
+      first = max_of(first, min_of(a, b));
+      last = min_of(last, max_of(a, b));
+    };
+    const Vec3d lower = to_double(box.lower), upper = to_double(box.upper);
+    narrow(from.x, direction.x, lower.x, upper.x);
+    narrow(from.y, direction.y, lower.y, upper.y);
+    narrow(from.z, direction.z, lower.z, upper.z);
+    return first <= last ? first : kInfinity;
+  }
+  double limit() const { return is_blocked ? -1 : kInfinity; }
+
+  // After T. Moeller and B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
+  void visit(std::uint32_t i) {
+    const Vec3d a = to_double(facets[i].a);
+    const Vec3d u = to_double(facets[i].b) - a, v = to_double(facets[i].c) - a;
+    const Vec3d across = cross(direction, v);
+    const double determinant = dot(u, across);
+    if (determinant == 0) return;
+    const Vec3d offset = from - a;
+    const double along_u = dot(offset, across) / determinant;
+    const Vec3d other = cross(offset, u);
+    const double along_v = dot(direction, other) / determinant;
+    if (along_u < 0 || along_v < 0 || along_u + along_v > 1) return;
+    if (dot(v, other) / determinant > 0) is_blocked = true;
+  }
+};
+
 }  // namespace
+
+bool LineOfSight::is_free(Vec3d from, Vec3d direction) const {
+  const kernels::TriangleBvhView& bvh = bvh_.view();
+  BlockedMetric metric{from, direction, bvh.facets};
+  bvh.walk(metric);
+  return !metric.is_blocked;
+}
 
 SceneRays::SceneRays(const Mesh& mesh, const std::vector<Vec3d>& corners)
     : behind_(behind_plane(mesh, corners)), bvh_(behind_.positions, behind_.triangles) {}

@@ -39,4 +39,14 @@ class SceneRays {
   kernels::HostTriangleBvh bvh_;
 };
 
+// Whether anything of a mesh stands in the way, in the model's coordinates.
+class LineOfSight {
+ public:
+  explicit LineOfSight(const Mesh& mesh) : bvh_(mesh.positions, mesh.triangles) {}
+  bool is_free(Vec3d from, Vec3d direction) const;
+
+ private:
+  kernels::HostTriangleBvh bvh_;
+};
+
 }  // namespace aerate

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/cli/job.h"
+#include "tests/slicer/fake_slicer.h"
 #include "tests/support/caught.h"
 
 // Pictures of jobs, seen from the shell.
@@ -99,6 +100,28 @@ TEST(PictureCommand, ShowsPackingsAndModelsThatWereRead) {
   }
 }
 
+// With a program that stands for a slicer.
+TEST(PictureCommand, ShowsTheFormThatIsSliced) {
+  const Job job;
+  const TemporaryFolder folder;
+  const FakeSlicer slicer(folder);
+  const fs::path model = job.input("block.stl", block()), picture = job.outputs() / "sliced.png";
+  std::vector<std::string> seen;
+  for (const double voids : {4000.0, 6000.0}) {
+    slicer.hands_out("solid", fake_gcode(5000));
+    slicer.hands_out("voids", fake_gcode(voids));
+    slicer.hands_out("modifiers", fake_gcode(7000));
+    const ProcessResult result =
+        aerate({"slice", model, "--slicer", "prusa-slicer", "--slicer-path", slicer.program(), "--compare",
+                "forms", "--as", "auto", "-o", job.outputs() / "out.gcode", "--picture", picture});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(entries_of(job.outputs()), (std::vector<std::string>{"out.gcode", "sliced.png"}));
+    seen.push_back(read_bytes(picture));
+  }
+  // Hollowed, then solid.
+  EXPECT_NE(seen[0], seen[1]);
+}
+
 TEST(PictureCommand, NothingIsLeftOfAJobThatFails) {
   const Job job;
   const fs::path model = job.input("thin.stl", make_box({0, 0, 0}, {30, 30, 1}));
@@ -155,7 +178,7 @@ TEST(PictureCommand, RefusesWhatItCannotDraw) {
                                              {"--picture-size", "800"},
                                              {"--picture-size", "0x100"},
                                              {"--picture-size", "100x800"},
-                                             {"--picture-size", "16000x16000"},
+                                             {"--picture-size", "8000x8000"},
                                              {"--picture-size", "1e9x1e9"},
                                              {"--picture-size", "800.5x600"},
                                              {"--picture-colour", "red"}}) {

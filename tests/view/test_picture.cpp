@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 #include <vector>
 
+#include "core/error.h"
 #include "tests/support/shapes.h"
 #include "view/picture.h"
 #include "view/png_bytes.h"
@@ -43,6 +44,11 @@ Scene cube_with_ball() {
   Scene scene = scene_with(make_box({-10, -10, -10}, {10, 10, 10}));
   add_ball(scene, {0, 0, 0}, 5);
   return scene;
+}
+
+Picture draw_picture(const Scene& scene, const PictureRequest& request) {
+  Monitor monitor;
+  return aerate::draw_picture(scene, request, monitor);
 }
 
 PictureRequest cut(CutAxis axis, double share, PictureColour colour = PictureColour::radius) {
@@ -180,6 +186,12 @@ TEST(Picture, DefectsAreDrawnAlongTheirEdges) {
   EXPECT_TRUE(picture.cut.is_whole());
   EXPECT_EQ(picture.cut.axis, CutAxis::y);
   EXPECT_EQ(picture.cut.share, 0);
+  // One that is only seen from behind.
+  Scene turned = scene;
+  turned.marks.front().lines = {{{-6, 10, 6}, {6, 10, 6}}};
+  const Picture from_behind = draw_picture(turned, request);
+  EXPECT_EQ(from_behind.cut.axis, CutAxis::y);
+  EXPECT_EQ(from_behind.cut.share, 1);
   for (const Vec3d place : {Vec3d{-3, -10, 6}, {3, -10, 6}, {6, -10, -3}}) {
     const Colour colour = colour_at(picture, place);
     EXPECT_GT(colour.red, 180);
@@ -269,6 +281,13 @@ TEST(Picture, IsDrawnAtAnySize) {
     EXPECT_EQ(picture.image.height(), height);
     EXPECT_TRUE(std::ranges::any_of(picture.image.pixels(), [](Colour c) { return !(c == kPaper); }));
   }
+}
+
+TEST(Picture, StopsWhenItIsToldTo) {
+  struct Stopped : Monitor {
+    void check_interrupted() override { throw InterruptedError(); }
+  } stopped;
+  EXPECT_THROW(aerate::draw_picture(cube_with_ball(), cut(CutAxis::y, 0.5), stopped), InterruptedError);
 }
 
 TEST(Png, IsReadAsItWasWritten) {
