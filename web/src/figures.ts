@@ -1,0 +1,58 @@
+// The report: before and after, its figures, how large the voids are, what is marked.
+import { format } from './colours';
+import { make } from './dom';
+import { histogram } from './histogram';
+import { nameOfVoids, type Change, type Mark, type Scene } from './scene';
+
+const digits = (value: number): number => (Math.abs(value) >= 100 ? 0 : Math.abs(value) >= 10 ? 1 : 2);
+
+function changeOf({ before, after }: Change): string {
+  if (before === 0) return '';
+  const percent = (100 * (after - before)) / before;
+  return `${percent > 0 ? '+' : percent < 0 ? '\u2212' : ''}${format(Math.abs(percent), 1)} %`;
+}
+
+function beforeAndAfter(changes: readonly Change[]): HTMLElement {
+  const head = ['', 'Before', 'After', 'Change'].map((name) => make('th', { scope: 'col' }, name));
+  const rows = changes.map((change) => {
+    const shown = (value: number): string => `${format(value, digits(value))} ${change.unit}`.trim();
+    return make(
+      'tr',
+      {},
+      make('th', { scope: 'row' }, change.name),
+      make('td', {}, shown(change.before)),
+      make('td', {}, shown(change.after)),
+      make('td', { class: 'change' }, changeOf(change)),
+    );
+  });
+  return make('table', {}, make('thead', {}, make('tr', {}, ...head)), make('tbody', {}, ...rows));
+}
+
+function listOf(figures: Scene['figures']): HTMLElement {
+  const list = make('dl');
+  for (const [name, value] of figures) list.append(make('div', {}, make('dt', {}, name), make('dd', {}, value)));
+  return list;
+}
+
+function marksOf(marks: readonly Mark[], onMark: (mark: Mark) => void): HTMLElement {
+  const list = make('ul', { class: 'marks' });
+  for (const mark of marks) {
+    const button = make('button', { type: 'button' }, mark.text);
+    button.addEventListener('click', () => onMark(mark));
+    list.append(make('li', {}, button));
+  }
+  return list;
+}
+
+export function showFigures(scene: Scene, into: HTMLElement, onMark: (mark: Mark) => void): void {
+  const section = (title: string, ...content: readonly Node[]): void => {
+    into.append(make('section', {}, make('h2', {}, title), ...content));
+  };
+  if (scene.changes.length > 0) section('Before and after', beforeAndAfter(scene.changes));
+  if (scene.marks.length > 0) section('Marked in the model', marksOf(scene.marks, onMark));
+  if (scene.voids.radius.length > 0) {
+    const name = `Radii of the ${nameOfVoids(scene.use).many.toLowerCase()}`;
+    section(name, histogram(scene.voids.radius, name));
+  }
+  if (scene.figures.length > 0) section('Figures', listOf(scene.figures));
+}
