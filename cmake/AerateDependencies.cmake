@@ -11,6 +11,7 @@ find_package(fmt REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(EXPAT REQUIRED)
 find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)
 
 # Not through libzip's own CMake files: Debian's refer to tools of three further packages.
 find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)

@@ -181,7 +181,7 @@ class Walk {
     this.to[here] = tip;
     this.behind[here] = to;
     this.after[here] = added;
-    this.settle(here);
+    this.settle(added);
   }
 
   private remove(gate: number): void {
@@ -194,7 +194,7 @@ class Walk {
     return this.from[a] === this.to[b] && this.to[a] === this.from[b];
   }
 
-  // Takes gates out that are two sides of one edge, and goes to the next one.
+  // Takes gates out that are two sides of one edge.
   private settle(gate: number): void {
     this.here = gate;
     for (;;) {
@@ -203,7 +203,7 @@ class Walk {
       const after = this.after[closed];
       if (after === closed) return;
       const other = this.isBack(closed, after) ? after : this.isBack(closed, before) ? before : -1;
-      if (other < 0) break;
+      if (other < 0) return;
       const left = other === after ? before : this.before[other];
       this.remove(closed);
       const isLast = this.after[other] === other;
@@ -214,7 +214,6 @@ class Walk {
       }
       this.here = left;
     }
-    this.here = this.after[this.here];
   }
 }
 
