@@ -111,9 +111,9 @@ Json list_of(const std::vector<SceneFigure>& figures) {
   return list;
 }
 
-Json list_of(std::span<const PageChange> changes) {
+Json list_of(const std::vector<SceneChange>& changes) {
   Json list = Json::array();
-  for (const PageChange& change : changes)
+  for (const SceneChange& change : changes)
     list.push_back(
         {{"name", change.name}, {"unit", change.unit}, {"before", change.before}, {"after", change.after}});
   return list;
@@ -132,7 +132,7 @@ std::string in_four_bytes(std::size_t number) {
 
 }  // namespace
 
-std::string page_data(const Scene& scene, std::span<const PageChange> changes, std::string_view program) {
+std::string page_data(const Scene& scene, std::string_view program) {
   const PageGrid grid = page_grid(scene.mesh, scene.tolerance);
   const PageGeometry geometry = encode_geometry(scene.mesh, scene.parts, grid);
   const Json header = {
@@ -151,7 +151,7 @@ std::string page_data(const Scene& scene, std::span<const PageChange> changes, s
       {"voids", voids_in_columns(scene.voids)},
       {"marks", list_of(scene.marks)},
       {"figures", list_of(scene.figures)},
-      {"changes", list_of(changes)},
+      {"changes", list_of(scene.changes)},
       {"up", exact(scene.up)},
       {"layerHeight", number_or_null(scene.layer_height)},
       {"tolerance", scene.tolerance},
@@ -171,14 +171,14 @@ void require_page() {
       "built page of a release: cmake -DAERATE_VIEW_PAGE=view.html");
 }
 
-std::string page_of(const Scene& scene, std::span<const PageChange> changes, std::string_view program) {
+std::string page_of(const Scene& scene, std::string_view program) {
   require_page();
   const std::string_view page = *page_template();
   const std::size_t at = page.find(kDataGoesHere);
   if (at == std::string_view::npos)
     throw FailureError("the page that this program was built with takes no data");
   std::string whole(page.substr(0, at));
-  whole += page_data(scene, changes, program);
+  whole += page_data(scene, program);
   whole += page.substr(at + kDataGoesHere.size());
   return whole;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -8,22 +7,15 @@
 
 namespace aerate {
 
-// A figure of the model as it was and as it is.
-struct PageChange {
-  std::string name, unit;
-  double before = 0;
-  double after = 0;
-};
-
 // What a page shows, as it stands in it: a header and the triangles, deflated, as base64 (docs/view.md, "The format"). The
 // same for any number of threads.
 //   program: who made it, with its version
-std::string page_data(const Scene& scene, std::span<const PageChange> changes, std::string_view program);
+std::string page_data(const Scene& scene, std::string_view program);
 
 // Throws UsageError, with what was missing, if the program was built without the page.
 void require_page();
 
 // One file of HTML that needs nothing else. Throws as `require_page` does.
-std::string page_of(const Scene& scene, std::span<const PageChange> changes, std::string_view program);
+std::string page_of(const Scene& scene, std::string_view program);
 
 }  // namespace aerate

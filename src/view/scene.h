@@ -57,6 +57,13 @@ struct SceneFigure {
   std::string name, value;
 };
 
+// A figure of the model as it was and as it is.
+struct SceneChange {
+  std::string name, unit;
+  double before = 0;
+  double after = 0;
+};
+
 struct Scene {
   std::string title;  // the model's file, without its folder
   std::string is;     // what is shown, in a few words: "hollowed by 61 voids"
@@ -72,6 +79,7 @@ struct Scene {
   std::vector<SceneVoid> voids;
   std::vector<SceneMark> marks;
   std::vector<SceneFigure> figures;
+  std::vector<SceneChange> changes;
 
   Vec3d up{0, 0, 1};                   // unit, against gravity while it is printed
   std::optional<double> layer_height;  // as far as the print was described

@@ -31,12 +31,11 @@ Scene box_with_a_void() {
   scene.voids = {{.number = 1, .place = {10, 10, 8}, .radius = 5, .volume = 500.25, .wall = 3}};
   scene.marks = {{MarkKind::thinnest_wall, {10, 10, 3}, "3 mm at void 1", {}}};
   scene.figures = {{"wall", "3 mm at least"}};
+  scene.changes = {{"Volume", "mm3", 8000, 7499.75}};
   scene.layer_height = 0.25;
   scene.tolerance = 0.05;
   return scene;
 }
-
-const std::vector<PageChange> kChanges{{"Volume", "mm3", 8000, 7499.75}};
 
 struct Unpacked {
   Json header;
@@ -52,7 +51,7 @@ Unpacked unpacked(const std::string& data) {
 }
 
 TEST(Page, DataSaysWhatTheSceneSays) {
-  const auto [header, streams] = unpacked(page_data(box_with_a_void(), kChanges, "aerate 1"));
+  const auto [header, streams] = unpacked(page_data(box_with_a_void(), "aerate 1"));
   EXPECT_EQ(header["title"], "box </script> \xc3\xa9.stl");
   EXPECT_EQ(header["program"], "aerate 1");
   EXPECT_EQ(header["use"], "removed");
@@ -71,7 +70,7 @@ TEST(Page, DataSaysWhatTheSceneSays) {
 
 // The page's own tests read this file (web/tests): who changes the format changes both.
 TEST(Page, DataIsWhatThePageIsTestedWith) {
-  const auto now = unpacked(page_data(box_with_a_void(), kChanges, "aerate 1"));
+  const auto now = unpacked(page_data(box_with_a_void(), "aerate 1"));
   const auto kept = unpacked(test::read_bytes(AERATE_TEST_DATA "/page-data.txt"));
   EXPECT_EQ(now.header, kept.header);
   EXPECT_EQ(now.streams, kept.streams);
@@ -80,20 +79,20 @@ TEST(Page, DataIsWhatThePageIsTestedWith) {
 TEST(Page, WhatIsNotUtf8IsReplaced) {
   Scene scene = box_with_a_void();
   scene.title = "a\xff.stl";
-  EXPECT_EQ(unpacked(page_data(scene, {}, "aerate 1")).header["title"], "a\xef\xbf\xbd.stl");
+  EXPECT_EQ(unpacked(page_data(scene, "aerate 1")).header["title"], "a\xef\xbf\xbd.stl");
 }
 
 TEST(Page, AWallThatIsNotKnownIsNull) {
   Scene scene = box_with_a_void();
   scene.voids[0].wall.reset();
-  EXPECT_TRUE(unpacked(page_data(scene, {}, "aerate 1")).header["voids"]["wall"][0].is_null());
+  EXPECT_TRUE(unpacked(page_data(scene, "aerate 1")).header["voids"]["wall"][0].is_null());
 }
 
 TEST(Page, IsOneFileThatAsksForNothing) {
   if (!page_template()) GTEST_SKIP() << "built without the page: " << why_no_page();
   const Scene scene = box_with_a_void();
-  const std::string page = page_of(scene, kChanges, "aerate 1");
-  EXPECT_NE(page.find(page_data(scene, kChanges, "aerate 1")), std::string::npos);
+  const std::string page = page_of(scene, "aerate 1");
+  EXPECT_NE(page.find(page_data(scene, "aerate 1")), std::string::npos);
   EXPECT_EQ(page.find("<!--"), std::string::npos);  // nothing is left open
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
   EXPECT_EQ(page.find("src=\"http"), std::string::npos);

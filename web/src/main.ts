@@ -32,6 +32,8 @@ declare global {
   interface Window {
     aerate?: {
       readonly scene: Scene;
+      readonly centre: Vec3; // of the model, mm
+      readonly size: Vec3;
       state: () => State;
       set: (change: Partial<State>) => void;
       project: (place: Vec3) => readonly [number, number];
@@ -142,7 +144,14 @@ async function main(): Promise<void> {
   });
   listenToTheme(shownStage);
   listenToPrint(canvas, shownStage);
-  window.aerate = { scene, state: () => state, set: apply, project: (place) => shownStage.project(place) };
+  window.aerate = {
+    scene,
+    centre: geometry.centre,
+    size: geometry.size,
+    state: () => state,
+    set: apply,
+    project: (place) => shownStage.project(place),
+  };
 
   colour();
   home();

@@ -1,0 +1,226 @@
+// The page as a browser shows it, opened from disk. AERATE_PAGE is a page that the program wrote (scripts/test-web).
+import { existsSync } from 'node:fs';
+import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
+import { Pixels } from './pixels';
+
+const kPage = process.env.AERATE_PAGE ?? '';
+const kBrowser =
+  process.env.AERATE_BROWSER ?? ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
+
+// Chromium draws on the CPU.
+const kArguments = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+
+let browser: Browser;
+let messages: string[] = [];
+let requests: string[] = [];
+
+beforeAll(async () => {
+  if (!existsSync(kPage)) throw new Error('AERATE_PAGE names no page: run scripts/test-web');
+  if (!kBrowser) throw new Error('there is no Chromium: AERATE_BROWSER says where one is');
+  browser = await chromium.launch({ executablePath: kBrowser, args: kArguments });
+});
+afterAll(async () => browser?.close());
+afterEach(() => {
+  expect(messages).toEqual([]);
+  expect(requests.filter((url) => !url.startsWith('file:') && !url.startsWith('data:'))).toEqual([]);
+});
+
+async function open(options: BrowserContextOptions = {}): Promise<Page> {
+  messages = [];
+  requests = [];
+  const context = await browser.newContext({ viewport: { width: 1200, height: 800 }, colorScheme: 'light', ...options });
+  const page = await context.newPage();
+  page.on('console', (message) => messages.push(message.text()));
+  page.on('pageerror', (error) => messages.push(error.message));
+  page.on('request', (request) => requests.push(request.url()));
+  await page.goto(`file://${kPage}`);
+  await page.waitForSelector('html[data-ready]');
+  expect(await page.getAttribute('html', 'data-ready')).toBe('true');
+  return page;
+}
+
+const pixelsOf = async (page: Page): Promise<Pixels> => {
+  // What was asked for is drawn with the next frame.
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  return new Pixels(await page.evaluate(() => (document.getElementById('canvas') as HTMLCanvasElement).toDataURL()), page);
+};
+
+// Cuts through the middle of the largest void, and tells where that is, a place in the solid beside it and one outside of the
+// model, in pixels of the canvas.
+async function cutLargest(page: Page) {
+  await page.check('input[name=axis][value=y]');
+  const { number, share, ...places } = await page.evaluate(() => {
+    const { scene, project, size, centre } = window.aerate!;
+    const largest = scene.voids.radius.indexOf(Math.max(...scene.voids.radius));
+    const [x, y, z] = [0, 1, 2].map((k) => scene.voids.place[3 * largest + k]);
+    const kInSolid = 0.4; // mm from its wall, less than any gap
+    return {
+      number: scene.voids.number[largest],
+      share: (y - centre[1]) / size[1] + 0.5,
+      middle: project([x, y, z]),
+      beside: project([x + scene.voids.radius[largest] + kInSolid, y, z]),
+      outside: [8, 8] as const,
+    };
+  });
+  await page.fill('#cut', String(Math.round(500 * share)));
+  return { number, ...places };
+}
+
+describe('the page', () => {
+  it('shows the figures of the report', async () => {
+    const page = await open();
+    expect(await page.textContent('h1')).toContain('.stl');
+    const figures = await page.textContent('#figures');
+    const told = await page.evaluate(() => window.aerate!.scene.figures);
+    expect(told.length).toBeGreaterThan(0);
+    for (const [name, value] of told) {
+      expect(figures).toContain(name);
+      expect(figures).toContain(value);
+    }
+    expect(await page.locator('.histogram rect').count()).toBeGreaterThan(0);
+    expect(await page.textContent('#footer')).toContain('three.js authors');
+    await page.context().close();
+  });
+
+  it('closes the cut face: background in a void, hatched solid beside it', async () => {
+    const page = await open();
+    const { middle, beside, outside } = await cutLargest(page);
+    await page.check('#alone');
+    const face = await pixelsOf(page);
+    expect(await face.opacity(middle)).toBe(0);
+    expect(await face.opacity(outside)).toBe(0);
+    expect(await face.opacity(beside)).toBe(255);
+    // Two colours, of the face and of its lines.
+    expect(await face.coloursRound(beside)).toBeGreaterThan(1);
+    await page.uncheck('#alone');
+    const whole = await pixelsOf(page);
+    expect(await whole.opacity(middle)).toBe(255); // the void's far wall
+    expect(await whole.isBlue(middle)).toBe(true);
+    expect(await whole.isBlue(beside)).toBe(false);
+    await page.context().close();
+  });
+
+  it('moves the cut by the slider, by keys, and turns', async () => {
+    const page = await open();
+    const first = await pixelsOf(page);
+    const { middle } = await cutLargest(page);
+    const before = await pixelsOf(page);
+    expect(await before.isBlue(middle)).toBe(true);
+    await page.focus('#cut');
+    for (let i = 0; i < 3; ++i) await page.keyboard.press('PageUp');
+    const moved = await pixelsOf(page);
+    expect(moved.differs(before)).toBe(true);
+    // Out of the model nothing is cut away, and the surface hides the void.
+    await page.fill('#cut', '0');
+    expect(await (await pixelsOf(page)).isBlue(middle)).toBe(false);
+    await page.focus('#canvas');
+    await page.keyboard.press('Home');
+    expect((await pixelsOf(page)).differs(first)).toBe(false);
+    await page.keyboard.press('ArrowLeft');
+    expect((await pixelsOf(page)).differs(first)).toBe(true);
+    await page.context().close();
+  });
+
+  it('tells of the void that is clicked', async () => {
+    const page = await open();
+    const { middle, number, outside } = await cutLargest(page);
+    await page.mouse.click(...middle);
+    const told = await page.textContent('#chosen');
+    expect(told).toContain(`${number}`);
+    expect(told).toMatch(/Radius[\d.,]+ mm/);
+    expect(told).toMatch(/Place/);
+    expect(told).toMatch(/Wall[\d.,]+ mm/);
+    await page.mouse.click(...outside);
+    expect(await page.isHidden('#chosen')).toBe(true);
+    await page.context().close();
+  });
+
+  it('shows what is printed up to a layer', async () => {
+    const page = await open();
+    const before = await pixelsOf(page);
+    await page.fill('#layer', '1');
+    expect(await page.inputValue('#layer')).toBe('1');
+    const first = await pixelsOf(page);
+    expect(await first.covered()).toBeLessThan(0.5 * (await before.covered()));
+    await page.context().close();
+  });
+
+  it('switches surfaces and colours', async () => {
+    const page = await open();
+    const before = await pixelsOf(page);
+    await page.check('input[name=outer][value=off]');
+    const voids = await pixelsOf(page);
+    expect(await voids.covered()).toBeLessThan(await before.covered());
+    expect(await voids.covered()).toBeGreaterThan(0);
+    await page.check('input[name=outer][value=faded]');
+    expect((await pixelsOf(page)).differs(voids)).toBe(true);
+    await page.check('input[name=outer][value=solid]');
+    await page.uncheck('#show-void');
+    expect((await pixelsOf(page)).differs(before)).toBe(true);
+    await page.check('#show-void');
+    expect(await page.isHidden('#legend')).toBe(true);
+    await page.check('input[name=by][value=radius]');
+    expect(await page.textContent('#legend')).toContain('mm');
+    expect((await pixelsOf(page)).differs(before)).toBe(true);
+    await page.context().close();
+  });
+
+  it('fits a telephone, in the dark', async () => {
+    const page = await open({ viewport: { width: 390, height: 844 }, colorScheme: 'dark', hasTouch: true, isMobile: true });
+    expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(390);
+    const { middle } = await cutLargest(page);
+    await page.touchscreen.tap(...middle);
+    expect(await page.isVisible('#chosen')).toBe(true);
+    await page.context().close();
+  });
+
+  it('is printed with its picture and its figures, without its controls', async () => {
+    const page = await open();
+    await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+    await page.emulateMedia({ media: 'print' });
+    expect(await page.isVisible('#printed')).toBe(true);
+    expect(await page.isVisible('#controls')).toBe(false);
+    expect(await page.isVisible('#figures')).toBe(true);
+    expect((await page.pdf()).length).toBeGreaterThan(10_000);
+    await page.context().close();
+  });
+
+  it('has words that can be read: 4.5 to 1 and more, and names for all that is pressed', async () => {
+    for (const colorScheme of ['light', 'dark'] as const) {
+      const page = await open({ colorScheme });
+      await page.check('input[name=by][value=radius]');
+      await page.click('#help summary');
+      const faint = await page.evaluate(() => {
+        const channel = (value: number) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
+        const light = (colour: string) => {
+          const [r, g, b] = (colour.match(/[\d.]+/g) ?? []).map((part) => channel(Number(part) / 255));
+          return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+        };
+        const ground = (element: Element | null): string => {
+          for (let at = element; at; at = at.parentElement) {
+            const colour = getComputedStyle(at).backgroundColor;
+            if (!/, 0\)$/.test(colour)) return colour;
+          }
+          return 'rgb(255, 255, 255)';
+        };
+        const found: string[] = [];
+        for (const element of document.querySelectorAll('#panel *, #legend *')) {
+          const own = [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent?.trim());
+          if (!own || !(element instanceof HTMLElement) || element.offsetParent === null) continue;
+          if (element.closest('fieldset :disabled')) continue;
+          const [a, b] = [light(getComputedStyle(element).color), light(ground(element))];
+          const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+          if (ratio < 4.5) found.push(`${element.textContent}: ${ratio.toFixed(2)}`);
+        }
+        for (const input of document.querySelectorAll<HTMLInputElement>('#panel input'))
+          if (!input.labels?.length) found.push(`${input.id} has no label`);
+        for (const button of document.querySelectorAll('#panel button'))
+          if (!(button.getAttribute('aria-label') ?? button.textContent)) found.push('a button has no name');
+        return found;
+      });
+      expect(faint).toEqual([]);
+      await page.context().close();
+    }
+  });
+});
