@@ -66,10 +66,18 @@ ViewOptions::ViewOptions(CLI::App& command, const std::string& what) {
           ->check(CLI::IsMember({"radius", "thickness"}))
           ->type_name("WHAT")
           ->capture_default_str());
+  command
+      .add_option(
+          "--view", page_,
+          fmt::format("Also make a page of {}, to turn and cut in a browser, with its figures: one file that "
+                      "needs no network (.html)",
+                      what))
+      ->type_name("FILE");
 }
 
 ViewOutputs ViewOptions::outputs() const {
   ViewOutputs outputs;
+  if (!page_.empty()) outputs.page = page_;
   if (picture_.empty()) {
     for (const CLI::Option* option : of_picture_)
       if (option->count() > 0)
@@ -92,6 +100,7 @@ ViewOutputs ViewOptions::outputs() const {
 std::vector<std::filesystem::path> ViewOptions::files() const {
   std::vector<std::filesystem::path> files;
   if (!picture_.empty()) files.emplace_back(picture_);
+  if (!page_.empty()) files.emplace_back(page_);
   return files;
 }
 

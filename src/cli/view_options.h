@@ -22,7 +22,7 @@ struct PictureSize {
 };
 std::optional<PictureSize> parse_picture_size(const std::string& text);
 
-// --picture, --picture-cut, --picture-size, --picture-colour
+// --picture, --picture-cut, --picture-size, --picture-colour, --view
 class ViewOptions {
  public:
   //   what: is shown
@@ -34,7 +34,7 @@ class ViewOptions {
   std::vector<std::filesystem::path> files() const;
 
  private:
-  std::string picture_, cut_, size_ = "1000x800", colour_ = "radius";
+  std::string picture_, cut_, size_ = "1000x800", colour_ = "radius", page_;
   std::vector<const CLI::Option*> of_picture_;
 };
 

@@ -24,6 +24,7 @@
 #include "kernels/winding.h"
 #include "mesh/topology.h"
 #include "pipeline/budget.h"
+#include "pipeline/print_verdict.h"
 #include "printing/carve.h"
 #include "printing/cells/shape_cells.h"
 
@@ -247,6 +248,44 @@ void add_figures(Scene& scene, const HollowReport& report) {
   add("process", report.process.process.name);
 }
 
+// What a page tells beside these.
+void add_details(Scene& scene, const HollowReport& report) {
+  const OutputFacts& output = report.output;
+  const auto add = [&](const char* name, std::string value) {
+    scene.details.push_back({name, std::move(value)});
+  };
+  if (report.print)
+    for (const std::string& line : verdict_of(*report.print)) add("verdict", line);
+  if (!report.modifiers)
+    add("strength",
+        fmt::format("{:.0f} % solid; stiffness about {:.0f} % (an upper bound, estimated)",
+                    100 * output.volume_after / output.volume_before, 100 * report.balance.stiffness));
+  if (report.balance.tips_over()) add("balance", "it stood by itself, and its voids tip it over");
+  if (report.output.drainage) add("sealed", counted(output.drainage->sealed_cavities, "cavity", "cavities"));
+  add("file", fmt::format("{}, {}, {:.3g} MB", printable(report.output_path.filename().string()),
+                          counted(output.triangle_count, "triangle", "triangles"),
+                          static_cast<double>(report.output_bytes) / 1e6));
+  add("tolerance", fmt::format("{:.3g} mm", report.tolerance_used));
+}
+
+// Modifiers change nothing but what a print takes.
+void add_changes(Scene& scene, const HollowReport& report) {
+  const auto add = [&](const char* name, const char* unit, double before, double after) {
+    scene.changes.push_back({name, unit, before, after});
+  };
+  if (report.modifiers) {
+    if (report.print)
+      add("Filament", "cm3", report.print->filament_before_mm3 / 1000,
+          report.print->filament_after_mm3 / 1000);
+    return;
+  }
+  add("Volume", "cm3", report.output.volume_before / 1000, report.output.volume_after / 1000);
+  const MaterialUse use = material_use(report);
+  const bool if_solid = report.print && !use.predicted;
+  add(if_solid ? "Mass, if printed solid" : "Mass", "g", use.mass_before_g, use.mass_after_g);
+  add(if_solid ? "Cost, if printed solid" : "Cost", "", use.cost_before, use.cost_after);
+}
+
 // What bounds the model itself.
 Solid whole(const Mesh& mesh) {
   Solid solid{mesh, {}};
@@ -436,6 +475,8 @@ Scene scene_of(const HollowedModel& hollowed, const HollowReport& report) {
     add_wide_ceilings(scene, report.limits.roof, report.process.process.name);
   add_cups(scene, report.cups);
   add_figures(scene, report);
+  add_details(scene, report);
+  add_changes(scene, report);
   return scene;
 }
 

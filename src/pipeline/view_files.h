@@ -15,7 +15,8 @@ namespace aerate {
 // together with the result.
 class ViewFiles {
  public:
-  // Throws UsageError for a name that does not end in what is written, FailureError for a place that cannot be written to.
+  // Throws UsageError for a name that does not end in what is written and for a page that the program was built without,
+  // FailureError for a place that cannot be written to.
   ViewFiles(const ViewOutputs& outputs, Monitor& monitor);
 
   // Writes all of them beside their targets, as a stage each. `make_scene` is called if there are any. Throws FailureError.
@@ -26,7 +27,7 @@ class ViewFiles {
 
  private:
   const ViewOutputs& outputs_;
-  std::unique_ptr<AnnouncedFile> picture_;
+  std::unique_ptr<AnnouncedFile> picture_, page_;
 };
 
 }  // namespace aerate

@@ -16,8 +16,9 @@ struct PictureOutput {
 // What is to be shown of a job, beside its result.
 struct ViewOutputs {
   std::optional<PictureOutput> picture;
+  std::optional<std::filesystem::path> page;  // .html
 
-  bool are_asked_for() const { return picture.has_value(); }
+  bool are_asked_for() const { return picture || page; }
 };
 
 }  // namespace aerate

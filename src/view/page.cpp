@@ -105,9 +105,10 @@ Json list_of(const std::vector<SceneMark>& marks) {
   return list;
 }
 
-Json list_of(const std::vector<SceneFigure>& figures) {
+Json figures_of(const Scene& scene) {
   Json list = Json::array();
-  for (const SceneFigure& figure : figures) list.push_back({figure.name, figure.value});
+  for (const auto* figures : {&scene.figures, &scene.details})
+    for (const SceneFigure& figure : *figures) list.push_back({figure.name, figure.value});
   return list;
 }
 
@@ -150,7 +151,7 @@ std::string page_data(const Scene& scene, std::string_view program) {
       {"parts", parts_in_columns(scene.parts)},
       {"voids", voids_in_columns(scene.voids)},
       {"marks", list_of(scene.marks)},
-      {"figures", list_of(scene.figures)},
+      {"figures", figures_of(scene)},
       {"changes", list_of(scene.changes)},
       {"up", exact(scene.up)},
       {"layerHeight", number_or_null(scene.layer_height)},

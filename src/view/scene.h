@@ -79,6 +79,7 @@ struct Scene {
   std::vector<SceneVoid> voids;
   std::vector<SceneMark> marks;
   std::vector<SceneFigure> figures;
+  std::vector<SceneFigure> details;  // further ones, for where there is room
   std::vector<SceneChange> changes;
 
   Vec3d up{0, 0, 1};                   // unit, against gravity while it is printed

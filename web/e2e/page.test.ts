@@ -1,10 +1,11 @@
-// The page as a browser shows it, opened from disk. AERATE_PAGE is a page that the program wrote (scripts/test-web).
+// Pages that the program wrote (scripts/test-web), as a browser shows them that opens them from disk.
 import { existsSync } from 'node:fs';
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
+import { raised } from '../src/figures';
 import { Pixels } from './pixels';
 
-const kPage = process.env.AERATE_PAGE ?? '';
+const kPages = process.env.AERATE_PAGES ?? '';
 const kBrowser =
   process.env.AERATE_BROWSER ?? ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
 
@@ -16,7 +17,7 @@ let messages: string[] = [];
 let requests: string[] = [];
 
 beforeAll(async () => {
-  if (!existsSync(kPage)) throw new Error('AERATE_PAGE names no page: run scripts/test-web');
+  if (!existsSync(kPages)) throw new Error('AERATE_PAGES names no folder: run scripts/test-web');
   if (!kBrowser) throw new Error('there is no Chromium: AERATE_BROWSER says where one is');
   browser = await chromium.launch({ executablePath: kBrowser, args: kArguments });
 });
@@ -26,7 +27,7 @@ afterEach(() => {
   expect(requests.filter((url) => !url.startsWith('file:') && !url.startsWith('data:'))).toEqual([]);
 });
 
-async function open(options: BrowserContextOptions = {}): Promise<Page> {
+async function open(options: BrowserContextOptions = {}, name = 'voids'): Promise<Page> {
   messages = [];
   requests = [];
   const context = await browser.newContext({ viewport: { width: 1200, height: 800 }, colorScheme: 'light', ...options });
@@ -34,7 +35,7 @@ async function open(options: BrowserContextOptions = {}): Promise<Page> {
   page.on('console', (message) => messages.push(message.text()));
   page.on('pageerror', (error) => messages.push(error.message));
   page.on('request', (request) => requests.push(request.url()));
-  await page.goto(`file://${kPage}`);
+  await page.goto(`file://${kPages}/${name}.html`);
   await page.waitForSelector('html[data-ready]');
   expect(await page.getAttribute('html', 'data-ready')).toBe('true');
   return page;
@@ -76,7 +77,7 @@ describe('the page', () => {
     expect(told.length).toBeGreaterThan(0);
     for (const [name, value] of told) {
       expect(figures).toContain(name);
-      expect(figures).toContain(value);
+      expect(figures).toContain(raised(value));
     }
     expect(await page.locator('.histogram rect').count()).toBeGreaterThan(0);
     expect(await page.textContent('#footer')).toContain('three.js authors');
@@ -222,5 +223,41 @@ describe('the page', () => {
       expect(faint).toEqual([]);
       await page.context().close();
     }
+  });
+});
+
+describe('pages of other jobs', () => {
+  const kinds = (page: Page) => page.locator('#controls fieldset label.check[for^=show-]').allTextContents();
+
+  it('have channels and holes to switch where voids drain', async () => {
+    const page = await open({}, 'drained');
+    expect(await kinds(page)).toEqual(expect.arrayContaining(['Voids', 'Channels', 'Holes']));
+    await page.check('input[name=outer][value=off]');
+    const all = await pixelsOf(page);
+    await page.uncheck('#show-channel');
+    await page.uncheck('#show-hole');
+    expect(await (await pixelsOf(page)).covered()).toBeLessThan(await all.covered());
+    await page.context().close();
+  });
+
+  it('show modifiers in a model that stays solid', async () => {
+    const page = await open({}, 'modifiers');
+    expect(await kinds(page)).toContain('Modifiers');
+    const { middle } = await cutLargest(page);
+    await page.check('#alone');
+    const filled = await pixelsOf(page);
+    expect(await filled.opacity(middle)).toBe(255);
+    await page.uncheck('#show-void');
+    const plain = await pixelsOf(page);
+    expect(await plain.opacity(middle)).toBe(255);
+    expect(plain.differs(filled)).toBe(true);
+    await page.context().close();
+  });
+
+  it('show hollows of a model that was only read', async () => {
+    const page = await open({}, 'inspected');
+    expect(await kinds(page)).toContain('Hollows');
+    expect(await page.textContent('#figures')).toContain('shells');
+    await page.context().close();
   });
 });

@@ -4,6 +4,9 @@ import { make } from './dom';
 import { histogram } from './histogram';
 import { nameOfVoids, type Change, type Mark, type Scene } from './scene';
 
+// "cm3" as it is read.
+export const raised = (text: string): string => text.replace(/\b([cm]m)3\b/g, '$1\u00b3').replace(/\b([cm]m)2\b/g, '$1\u00b2');
+
 const digits = (value: number): number => (Math.abs(value) >= 100 ? 0 : Math.abs(value) >= 10 ? 1 : 2);
 
 function changeOf({ before, after }: Change): string {
@@ -15,7 +18,7 @@ function changeOf({ before, after }: Change): string {
 function beforeAndAfter(changes: readonly Change[]): HTMLElement {
   const head = ['', 'Before', 'After', 'Change'].map((name) => make('th', { scope: 'col' }, name));
   const rows = changes.map((change) => {
-    const shown = (value: number): string => `${format(value, digits(value))} ${change.unit}`.trim();
+    const shown = (value: number): string => `${format(value, digits(value))} ${raised(change.unit)}`.trim();
     return make(
       'tr',
       {},
@@ -30,14 +33,14 @@ function beforeAndAfter(changes: readonly Change[]): HTMLElement {
 
 function listOf(figures: Scene['figures']): HTMLElement {
   const list = make('dl');
-  for (const [name, value] of figures) list.append(make('div', {}, make('dt', {}, name), make('dd', {}, value)));
+  for (const [name, value] of figures) list.append(make('div', {}, make('dt', {}, name), make('dd', {}, raised(value))));
   return list;
 }
 
 function marksOf(marks: readonly Mark[], onMark: (mark: Mark) => void): HTMLElement {
   const list = make('ul', { class: 'marks' });
   for (const mark of marks) {
-    const button = make('button', { type: 'button' }, mark.text);
+    const button = make('button', { type: 'button' }, raised(mark.text));
     button.addEventListener('click', () => onMark(mark));
     list.append(make('li', {}, button));
   }
