@@ -54,7 +54,7 @@ TEST_F(View, SaysWhatTheReportSays) {
   const Json header = header_of(page());
   EXPECT_EQ(header["title"], "block.stl");
   EXPECT_EQ(header["use"], "removed");
-  EXPECT_EQ(header["voids"]["radius"].size(), report["packing"]["sphere_count"]);
+  EXPECT_EQ(header["voids"]["radius"].size(), report["voids"]["count"]);
   EXPECT_LE(header["grid"]["step"].get<double>(), header["tolerance"].get<double>() / 4);
   std::size_t triangles = 0;
   for (const Json& count : header["parts"]["triangles"]) triangles += count.get<std::size_t>();

@@ -7,7 +7,7 @@ import { nameOfVoids, type Change, type Mark, type Scene } from './scene';
 // "cm3" as it is read.
 export const raised = (text: string): string => text.replace(/\b([cm]m)3\b/g, '$1\u00b3').replace(/\b([cm]m)2\b/g, '$1\u00b2');
 
-const digits = (value: number): number => (Math.abs(value) >= 100 ? 0 : Math.abs(value) >= 10 ? 1 : 2);
+const digits = (value: number): number => (value >= 1000 ? 0 : value >= 10 ? 1 : 2);
 
 function changeOf({ before, after }: Change): string {
   if (before === 0) return '';
@@ -18,7 +18,9 @@ function changeOf({ before, after }: Change): string {
 function beforeAndAfter(changes: readonly Change[]): HTMLElement {
   const head = ['', 'Before', 'After', 'Change'].map((name) => make('th', { scope: 'col' }, name));
   const rows = changes.map((change) => {
-    const shown = (value: number): string => `${format(value, digits(value))} ${raised(change.unit)}`.trim();
+    const decimals = change.unit === '' ? 2 : digits(Math.max(Math.abs(change.before), Math.abs(change.after)));
+    const shown = (value: number): string =>
+      `${value.toLocaleString('en', { minimumFractionDigits: decimals, maximumFractionDigits: decimals })} ${raised(change.unit)}`.trim();
     return make(
       'tr',
       {},
