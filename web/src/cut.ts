@@ -59,6 +59,8 @@ export function bestCut(scene: Scene, geometry: Geometry): Cut {
   let best: Cut = { axis: 'y', share: 0.5, flipped: false };
   let most = 0;
   kAxes.forEach((axis, k) => {
+    // An upright cut is what most want to see first.
+    const weight = Math.abs(scene.up[k]) > 0.9 ? 0.7 : 1;
     const low = geometry.centre[k] - geometry.size[k] / 2;
     for (let step = 6; step <= 34; ++step) {
       const share = step / 40;
@@ -68,8 +70,8 @@ export function bestCut(scene: Scene, geometry: Geometry): Cut {
         const off = place[3 * i + k] - at;
         area += Math.max(0, radius[i] ** 2 - off ** 2);
       }
-      if (area > most * 1.0001) {
-        most = area;
+      if (weight * area > most * 1.0001) {
+        most = weight * area;
         best = { axis, share, flipped: false };
       }
     }

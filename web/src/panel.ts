@@ -157,11 +157,11 @@ export function makePanel(
   const voids = make(
     'div',
     { class: 'void-row' },
-    make('label', { for: 'number' }, `${names.one} (or click one)`),
+    make('label', { for: 'number' }, names.one),
     button('\u2039', `Previous ${one}`, step(-1)),
     number,
     button('\u203a', `Next ${one}`, step(1)),
-    make('span', { class: 'note' }, `of ${format(count)}`),
+    make('span', { class: 'note' }, `of ${format(count)}, or click one`),
   );
   const print = make('button', { type: 'button', class: 'wide' }, 'Print or save as PDF');
   print.addEventListener('click', onPrint);

@@ -59,15 +59,16 @@ void main() {
 }`;
 
 export const kSurfaceVertex = /* glsl */ `
+in vec4 slope; // normal, and whether it is that of a round surface
 in vec4 tint;
 centroid out vec3 vPlace;
 out vec3 vSlope;
-out vec3 vNormal;
+out vec4 vNormal;
 out vec4 vTint;
 void main() {
   vPlace = position;
   vSlope = position;
-  vNormal = normal;
+  vNormal = slope;
   vTint = tint;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
@@ -79,7 +80,7 @@ uniform bool isGlass;
 uniform vec3 chosenColour;
 centroid in vec3 vPlace;
 in vec3 vSlope;
-in vec3 vNormal;
+in vec4 vNormal;
 in vec4 vTint;
 out vec4 colour;
 void main() {
@@ -87,15 +88,14 @@ void main() {
   if (isAway(0, vPlace) || isAway(1, vPlace)) discard;
   vec3 eye = normalize(cameraPosition - vPlace);
   if (dot(flatNormal, eye) < 0.0) flatNormal = -flatNormal;
-  vec3 n = normalize(vNormal);
+  // Triangles at an edge are flat.
+  vec3 n = vNormal.w > 0.999 ? normalize(vNormal.xyz) : flatNormal;
   if (dot(n, flatNormal) < 0.0) n = -n;
-  // Round where the surface is, with edges where it has them.
-  n = normalize(mix(flatNormal, n, smoothstep(0.80, 0.90, dot(n, flatNormal))));
   // Light over the left shoulder of who looks, and some from above.
   vec3 side = vec3(viewMatrix[0][0], viewMatrix[1][0], viewMatrix[2][0]);
   vec3 top = vec3(viewMatrix[0][1], viewMatrix[1][1], viewMatrix[2][1]);
   vec3 light = normalize(eye - 0.45 * side + 0.6 * top);
-  float lit = 0.42 + 0.56 * max(dot(n, light), 0.0) + 0.10 * max(dot(n, eye), 0.0);
+  float lit = 0.5 + 0.48 * max(dot(n, light), 0.0) + 0.10 * max(dot(n, eye), 0.0);
   vec3 base = mix(vTint.rgb, chosenColour, vTint.a * 0.85);
   float rim = 1.0 - abs(dot(n, eye));
   if (isGlass) { colour = vec4(base * lit, 0.07 + 0.4 * rim * rim * rim); return; }

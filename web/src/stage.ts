@@ -1,5 +1,6 @@
 // What is drawn, by three.js: the surfaces, one mesh for each kind of part over the same vertices, and the marks.
 import {
+  Box3,
   BufferAttribute,
   BufferGeometry,
   CustomBlending,
@@ -134,7 +135,7 @@ export class Stage {
 
   private addSurfaces(normals: Int8Array): void {
     const position = new BufferAttribute(this.geometry.positions, 3);
-    const normal = new BufferAttribute(normals, 4, true);
+    const slope = new BufferAttribute(normals, 4, true);
     const index = new BufferAttribute(this.geometry.triangles, 1);
     for (const kind of kKinds) {
       const parts = this.geometry.parts.filter((part) => part.kind === kind);
@@ -142,7 +143,7 @@ export class Stage {
       const last = parts[parts.length - 1];
       const shape = new BufferGeometry();
       shape.setAttribute('position', position);
-      shape.setAttribute('normal', normal);
+      shape.setAttribute('slope', slope);
       shape.setAttribute('tint', this.tint);
       shape.setIndex(index);
       shape.boundingSphere = new Sphere(new Vector3(), this.radius);
@@ -282,22 +283,39 @@ export class Stage {
     this.draw();
   }
 
-  // From where `way` points to the model, as near as all of it is seen.
+  // From where `way` points to what is left of the model, as near as all of that is seen.
   lookFrom(way: Vec3): void {
-    this.controls.target.set(0, 0, 0);
-    this.camera.position.set(...way).setLength(this.radius);
+    const left = this.verticesLeft();
+    const { target } = this.controls;
+    target.copy(new Box3().setFromPoints([...left]).getCenter(new Vector3()));
+    const off = new Vector3(...way).setLength(this.radius);
+    this.camera.position.copy(target).add(off);
     this.controls.update();
-    this.camera.position.setLength(this.distanceToSeeAll());
+    this.camera.position.copy(target).add(off.setLength(this.distanceToSee(left)));
     this.controls.update();
     this.draw();
   }
 
-  // In the direction in which the camera is.
-  private distanceToSeeAll(): number {
-    const kMost = 20_000; // vertices that are looked at
-    const kMargin = 1.06;
+  // Some of what is not cut away, all over it; what is, moved onto the plane, stands for the cut face.
+  private verticesLeft(): readonly Vector3[] {
+    const kMost = 40_000;
     const { positions } = this.geometry;
     const stride = 3 * Math.max(1, Math.ceil(positions.length / 3 / kMost));
+    const left: Vector3[] = [];
+    for (let i = 0; i < positions.length; i += stride) {
+      const at = new Vector3().fromArray(positions, i);
+      for (const { normal, offset } of this.cuts) {
+        const across = new Vector3(...normal);
+        at.addScaledVector(across, -Math.max(at.dot(across) - offset, 0));
+      }
+      left.push(at);
+    }
+    return left.length > 0 ? left : [new Vector3()];
+  }
+
+  // In the direction in which the camera is.
+  private distanceToSee(places: readonly Vector3[]): number {
+    const kMargin = 1.06;
     this.camera.updateMatrixWorld();
     const [right, up, back] = [new Vector3(), new Vector3(), new Vector3()];
     this.camera.matrixWorld.extractBasis(right, up, back);
@@ -305,8 +323,8 @@ export class Stage {
     const wide = high * this.camera.aspect;
     const at = new Vector3();
     let distance = this.radius * 0.1;
-    for (let i = 0; i < positions.length; i += stride) {
-      at.fromArray(positions, i);
+    for (const place of places) {
+      at.copy(place).sub(this.controls.target);
       const aside = Math.max(Math.abs(at.dot(right)) / wide, Math.abs(at.dot(up)) / high);
       distance = Math.max(distance, at.dot(back) + aside);
     }

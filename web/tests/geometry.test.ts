@@ -60,7 +60,9 @@ describe('what the program wrote', () => {
       const [x, y, z] = [0, 1, 2].map((k) => geometry.positions[3 * v + k]);
       const inward = -(normals[4 * v] * x + normals[4 * v + 1] * y + normals[4 * v + 2] * (z + 2));
       expect(inward / 127 / 5).toBeGreaterThan(0.95);
+      expect(normals[4 * v + 3]).toBe(127);
     }
+    expect(normals[3]).toBe(0); // a corner of the box
   });
 });
 
