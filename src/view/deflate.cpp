@@ -12,7 +12,7 @@ std::string deflated(std::string_view bytes) {
   std::string packed(size, '\0');
   const int result =
       compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                static_cast<uLong>(bytes.size()), Z_BEST_COMPRESSION);
+                static_cast<uLong>(bytes.size()), Z_DEFAULT_COMPRESSION);
   if (result != Z_OK) throw FailureError("the page's data could not be packed: there is not enough memory");
   packed.resize(size);
   return packed;

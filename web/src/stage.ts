@@ -76,6 +76,18 @@ void main() {
 
 type Uniforms = Record<string, IUniform>;
 
+// Edges are smoothed unless that would make large models slow, which are drawn by the CPU.
+function isSmoothQuick(geometry: Geometry): boolean {
+  const kFew = 3 * 250_000;
+  if (geometry.triangles.length < kFew) return true;
+  const context = document.createElement('canvas').getContext('webgl2', { failIfMajorPerformanceCaveat: true });
+  if (!context) return false;
+  const names = context.getExtension('WEBGL_debug_renderer_info');
+  const name = String(context.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  return !/swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
 const isOutside = (kind: Kind): boolean => kind === 'outer' || kind === 'remnant';
 
 export class Stage {
@@ -84,7 +96,7 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly graph = new Graph();
   private readonly counted = new Graph();
-  private readonly counts = new WebGLRenderTarget(1, 1, { type: HalfFloatType, samples: 4, depthBuffer: false });
+  private readonly counts = new WebGLRenderTarget(1, 1, { type: HalfFloatType, depthBuffer: false });
   private readonly tint: BufferAttribute;
   // What all materials share.
   private readonly planes: IUniform<Vector4[]> = { value: [kNowhere.clone(), kNowhere.clone()] };
@@ -108,7 +120,9 @@ export class Stage {
     normals: Int8Array,
     tints: Uint8Array,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    const smooth = isSmoothQuick(geometry);
+    this.counts.samples = smooth ? 4 : 0;
+    this.renderer = new WebGLRenderer({ canvas, antialias: smooth, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.radius = Math.max(Math.hypot(...geometry.size) / 2, 1e-3);
     this.camera.up.set(...scene.up);
