@@ -46,6 +46,7 @@ PageGeometry expect_round_trip(const Mesh& mesh, const std::vector<SolidPart>& p
     const std::size_t first = reader.read().triangles.size();
     reader.read_part(part.triangle_count);
     std::vector<Corners> read;
+    read.reserve(part.triangle_count);
     for (std::size_t t = first; t < reader.read().triangles.size(); ++t) {
       const Triangle& corners = reader.read().triangles[t];
       read.push_back(in_order({reader.read().places[corners[0]], reader.read().places[corners[1]],
@@ -109,6 +110,7 @@ TEST(PageGeometry, AnySoupComesBack) {
     Mesh soup;
     const auto vertices = static_cast<std::uint32_t>(3 + random() % 12);
     const auto coordinate = [&] { return static_cast<float>(random() % 1000) / 10; };
+    soup.positions.reserve(vertices);
     for (std::uint32_t v = 0; v < vertices; ++v)
       soup.positions.push_back({coordinate(), coordinate(), coordinate()});
     for (std::size_t t = 1 + random() % 40; t > 0; --t)

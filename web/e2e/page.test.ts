@@ -1,7 +1,7 @@
 // Pages that the program wrote (scripts/test-web), as a browser shows them that opens them from disk.
 import { existsSync } from 'node:fs';
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
-import { afterAll, afterEach, beforeAll, describe, expect, it } from 'vitest';
+import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it } from 'vitest';
 import { raised } from '../src/figures';
 import { Pixels } from './pixels';
 
@@ -22,14 +22,16 @@ beforeAll(async () => {
   browser = await chromium.launch({ executablePath: kBrowser, args: kArguments });
 });
 afterAll(async () => browser?.close());
+beforeEach(() => {
+  messages = [];
+  requests = [];
+});
 afterEach(() => {
   expect(messages).toEqual([]);
   expect(requests.filter((url) => !url.startsWith('file:') && !url.startsWith('data:'))).toEqual([]);
 });
 
 async function open(options: BrowserContextOptions = {}, name = 'voids'): Promise<Page> {
-  messages = [];
-  requests = [];
   const context = await browser.newContext({ viewport: { width: 1200, height: 800 }, colorScheme: 'light', ...options });
   const page = await context.newPage();
   page.on('console', (message) => messages.push(message.text()));
@@ -177,12 +179,13 @@ describe('the page', () => {
   });
 
   it('is printed with its picture and its figures, without its controls', async () => {
-    const page = await open();
+    const page = await open({ colorScheme: 'dark' });
     await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
     await page.emulateMedia({ media: 'print' });
     expect(await page.isVisible('#printed')).toBe(true);
     expect(await page.isVisible('#controls')).toBe(false);
     expect(await page.isVisible('#figures')).toBe(true);
+    expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).toBe('rgb(255, 255, 255)');
     expect((await page.pdf()).length).toBeGreaterThan(10_000);
     await page.context().close();
   });
@@ -224,6 +227,17 @@ describe('the page', () => {
       await page.context().close();
     }
   });
+});
+
+it('says so where nothing can be drawn, and tells the figures all the same', async () => {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  await page.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
+  await page.goto(`file://${kPages}/voids.html`);
+  await page.waitForSelector('html[data-ready=failed]');
+  expect(await page.textContent('#state')).toContain('WebGL');
+  expect(await page.textContent('#figures')).toContain('Before and after');
+  await context.close();
 });
 
 describe('pages of other jobs', () => {

@@ -40,12 +40,14 @@ function listOf(figures: Scene['figures']): HTMLElement {
 }
 
 function marksOf(marks: readonly Mark[], onMark: (mark: Mark) => void): HTMLElement {
+  const kMost = 100;
   const list = make('ul', { class: 'marks' });
-  for (const mark of marks) {
+  for (const mark of marks.slice(0, kMost)) {
     const button = make('button', { type: 'button' }, raised(mark.text));
     button.addEventListener('click', () => onMark(mark));
     list.append(make('li', {}, button));
   }
+  if (marks.length > kMost) list.append(make('li', {}, `and ${format(marks.length - kMost)} more, marked in the model alone`));
   return list;
 }
 

@@ -94,7 +94,7 @@ async function main(): Promise<void> {
   const kinds = kKinds.filter(
     (kind) => kind !== 'outer' && kind !== 'remnant' && geometry.parts.some((part) => part.kind === kind),
   );
-  const isCut = scene.voids.radius.length > 0 && scene.closed;
+  const isCut = scene.voids.radius.length > 0 && shownStage.closesCuts;
   const best = bestCut(scene, geometry);
   const first: State = {
     cut: isCut ? best : { ...best, axis: null },
@@ -131,7 +131,7 @@ async function main(): Promise<void> {
     apply({ cut: first.cut, printed: first.printed });
     shownStage.lookFrom(firstWay(scene, planeOfCut(geometry, first.cut)));
   };
-  const update = makePanel(scene, geometry, layers, kinds, kKindColours, apply, () => state, () => window.print());
+  const update = makePanel(scene, geometry, layers, shownStage.closesCuts, kinds, kKindColours, apply, () => state, () => window.print());
 
   listenToKeys(canvas, shownStage, layers.count, scene.voids.radius.length, () => state, apply, home);
   listenToClicks(canvas, (x, y) => {
@@ -229,7 +229,7 @@ function listenToPrint(canvas: HTMLCanvasElement, stage: Stage): void {
   window.addEventListener('beforeprint', () => {
     stage.paint(kLight);
     stage.drawNow();
-    picture.src = canvas.toDataURL('image/png');
+    picture.src = trimmed(canvas);
     picture.alt = canvas.getAttribute('aria-label') ?? '';
     picture.hidden = false;
   });
@@ -237,6 +237,33 @@ function listenToPrint(canvas: HTMLCanvasElement, stage: Stage): void {
     picture.hidden = true;
     stage.paint(window.matchMedia('(prefers-color-scheme: dark)').matches ? kDark : kLight);
   });
+}
+
+// Without the margins on which nothing is drawn.
+function trimmed(canvas: HTMLCanvasElement): string {
+  const copy = document.createElement('canvas');
+  const { width, height } = canvas;
+  copy.width = width;
+  copy.height = height;
+  const context = copy.getContext('2d', { willReadFrequently: true });
+  if (!context) return canvas.toDataURL();
+  context.drawImage(canvas, 0, 0);
+  const { data } = context.getImageData(0, 0, width, height);
+  let [left, right, top, bottom] = [width, 0, height, 0];
+  for (let y = 0, at = 3; y < height; ++y) {
+    for (let x = 0; x < width; ++x, at += 4) {
+      if (data[at] === 0) continue;
+      left = Math.min(left, x);
+      right = Math.max(right, x + 1);
+      top = Math.min(top, y);
+      bottom = Math.max(bottom, y + 1);
+    }
+  }
+  if (left >= right) return canvas.toDataURL();
+  copy.width = right - left;
+  copy.height = bottom - top;
+  context.drawImage(canvas, -left, -top);
+  return copy.toDataURL();
 }
 
 main().catch((error: unknown) => {

@@ -74,6 +74,7 @@ export function makePanel(
   scene: Scene,
   geometry: Geometry,
   layers: Layers,
+  closesCuts: boolean,
   kinds: readonly Kind[],
   colours: Readonly<Record<Kind, Rgb>>,
   change: Change,
@@ -93,7 +94,9 @@ export function makePanel(
   const place = slider('Place', 'cut', kCutSteps, (at) => change({ cut: { ...current().cut, share: at / kCutSteps } }));
   const flip = check('Keep the other half', 'flip', (flipped) => change({ cut: { ...current().cut, flipped } }));
   const alone = check('Cut face alone', 'alone', (cutAlone) => change({ cutAlone }));
+  const openNote = make('p', { class: 'note' }, scene.closed ? 'This device cannot close the cut face.' : 'The surface is open: the cut shows no face.');
   axes.element.append(place.element, make('div', { class: 'checks' }, flip.element, alone.element));
+  if (!closesCuts) axes.element.append(openNote);
 
   const layer = slider('Printed up to layer', 'layer', layers.count, (printed) => change({ printed: Math.max(printed, 1) }));
   layer.input.min = '1';
@@ -175,8 +178,8 @@ export function makePanel(
   return (state) => {
     axes.set(state.cut.axis ?? 'none');
     const { axis, share } = state.cut;
-    place.input.disabled = flip.input.disabled = alone.input.disabled = !axis;
-    alone.input.disabled = !axis && state.printed >= layers.count;
+    place.input.disabled = flip.input.disabled = !axis;
+    alone.input.disabled = !closesCuts || (!axis && state.printed >= layers.count);
     place.input.value = String(Math.round(share * kCutSteps));
     const k = axis ? kAxes.indexOf(axis) : 0;
     const at = geometry.centre[k] + (share - 0.5) * geometry.size[k];

@@ -108,6 +108,8 @@ export class Stage {
   private readonly caps: Mesh[] = [];
   private readonly marks: (Points | LineSegments)[] = [];
   private readonly radius: number;
+  // Some old devices cannot count.
+  readonly closesCuts: boolean;
   private wanted = false;
   private cuts: readonly Plane[] = [];
   private isCapped = false;
@@ -123,6 +125,8 @@ export class Stage {
     const smooth = isSmoothQuick(geometry);
     this.counts.samples = smooth ? 4 : 0;
     this.renderer = new WebGLRenderer({ canvas, antialias: smooth, alpha: true, preserveDrawingBuffer: true });
+    const counts = ['EXT_color_buffer_float', 'EXT_color_buffer_half_float'].some((name) => this.renderer.extensions.has(name));
+    this.closesCuts = scene.closed && counts;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.radius = Math.max(Math.hypot(...geometry.size) / 2, 1e-3);
     this.camera.up.set(...scene.up);
@@ -282,7 +286,7 @@ export class Stage {
       mesh.visible = isOutside(kind) || (this.fillsVoids() ? kinds.has(kind) : areVoidsMade);
     for (const mesh of this.glass) mesh.visible = outer === 'faded' && !cutAlone;
     for (const mark of this.marks) mark.visible = marks;
-    this.isCapped = this.scene.closed && (outer !== 'off' || cutAlone);
+    this.isCapped = this.closesCuts && (outer !== 'off' || cutAlone);
     this.cap.opacity.value = outer === 'solid' || cutAlone ? 1 : 0.4;
     this.cuts = planes;
     this.caps.forEach((cap, i) => {
