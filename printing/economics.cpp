@@ -41,10 +41,14 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
     return z * z < radius * radius ? std::sqrt(radius * radius - z * z) : 0.0;
   };
   const auto fill = [&](long k) { return hole(k) > 0 ? hole(k) + rules.fill : 0.0; };
-  // Up to where the layer is skin since it looks that way; 0 if nothing of it does.
-  const auto skin = [&](long k, long direction) {
+  // Up to where the layer's infill looks that way; 0 if nothing of it does. It is skin up to a margin further.
+  const auto exposed = [&](long k, long direction) {
     const double other = hole(k + direction);
-    return other > fill(k) ? other + rules.skin_margin : 0.0;
+    return other > fill(k) ? other : 0.0;
+  };
+  const auto skin = [&](long k, long direction) {
+    const double end = exposed(k, direction);
+    return end > 0 ? end + rules.skin_margin : 0.0;
   };
   const long reach = std::lround(std::ceil(radius / h)) + std::max(rules.top_layers, rules.bottom_layers) + 1;
   FilamentUse use;
@@ -56,10 +60,10 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
       for (int step = 1; step <= count; ++step) {
         const long at = k + step * direction;
         const double other = hole(at);
-        covered = std::max(covered, step < count ? fill(at) : other);
+        covered = std::max(covered, rules.walls_cover && step < count ? fill(at) : other);
         if (other > hole(at - direction) + rules.lean) covered = std::max(covered, other + rules.shadow);
-        const double skinned = skin(at, direction);
-        if (step < count && skinned > 0) shaded = std::max(shaded, skinned + rules.shadow);
+        const double looking = exposed(at, direction);
+        if (step < count && looking > 0) shaded = std::max(shaded, looking + rules.skin_shadow);
       }
     };
     look(+1, rules.top_layers);

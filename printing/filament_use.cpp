@@ -46,7 +46,7 @@ struct Layers {
   ShellRules rules;
   double step = 1;  // mm
   int wall = 1, fill = 1, widened_walls = 0, lean = 0, shadow = 0, least_shell = 0, widening = 0,
-      half_line = 0;
+      half_line = 0, skin_margin = 0, skin_shadow = 0;
   int near = 0;  // of an edge that may pass between this pixel and the next
 
   int steps(double length) const { return static_cast<int>(std::lround(length / step)); }
@@ -130,6 +130,8 @@ Layers layers_of(const Mesh& mesh, const LayerRaster& raster, const PrintSetting
   layers.least_shell = layers.steps(rules.least_shell);
   layers.widening = layers.steps(rules.widening);
   layers.half_line = layers.steps(rules.spacing / 2);
+  layers.skin_margin = layers.steps(rules.skin_margin);
+  layers.skin_shadow = layers.steps(rules.skin_shadow);
   layers.near = 1 + std::min(layers.steps(kNearest * raster.pixel), kSteps - layers.fill);
   layers.depths.resize(raster.layer_count);
   const LayerSlicer slicer(mesh, raster);
@@ -222,7 +224,29 @@ bool carries_skin(const Layers& layers, std::size_t k, std::size_t i) {
   return std::min(in_modifier, in_fill) < layers.rules.unsupported;
 }
 
+// Where margins are narrow: they are told by how deep a pixel is under the next layer's contour, which is exact, however coarse
+// pixels are.
+Pixels narrow_skins_of(const Layers& layers, std::size_t k) {
+  const Pixels& depths = layers.depths[k];
+  Pixels flags(depths.size(), 0);
+  const auto add = [&](std::ptrdiff_t next, SkinFlag shades) {
+    const Pixels* other =
+        next >= 0 && next < layers.count() ? &layers.depths[static_cast<std::size_t>(next)] : nullptr;
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      if (!layers.is_fill(depths[i])) continue;
+      const int covering = other != nullptr ? (*other)[i] : 0;
+      if (covering > 0 && depths[i] - covering < layers.fill) continue;  // a wall alone is free
+      if (covering <= layers.skin_margin) flags[i] |= kIsSkin;
+      if (covering <= layers.skin_shadow) flags[i] |= shades;
+    }
+  };
+  if (layers.rules.bottom_layers > 0) add(static_cast<std::ptrdiff_t>(k) - 1, kShadesAbove);
+  if (layers.rules.top_layers > 0) add(static_cast<std::ptrdiff_t>(k) + 1, kShadesBelow);
+  return flags;
+}
+
 Pixels skins_of(const Layers& layers, std::size_t k) {
+  if (layers.rules.has_narrow_skins) return narrow_skins_of(layers, k);
   const Pixels& depths = layers.depths[k];
   Pixels flags(depths.size(), 0);
   // Infill that the next layer's contour leaves free, be it by less than a pixel; empty if there is none.
@@ -301,14 +325,17 @@ Cover cover_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
         return;
       }
       const Pixels& other = layers.depths[static_cast<std::size_t>(at)];
-      if (step < count) {  // the walls of the last one do not count
-        const Pixels& flags = skins[static_cast<std::size_t>(at)];
+      const bool walls_cover =
+          layers.rules.walls_cover && step < count;  // those of the last one do not count
+      if (walls_cover)
         transform(cover.depths, other, [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
+      if (step < count) {
+        const Pixels& flags = skins[static_cast<std::size_t>(at)];
         transform(cover.shaded, flags, [shades](std::uint8_t a, std::uint8_t b) {
           return static_cast<std::uint8_t>(a | (b & shades));
         });
       }
-      if (step < count && layers.shadow <= layers.fill) continue;  // then they reach further than shadows
+      if (walls_cover && layers.shadow <= layers.fill) continue;  // then they reach further than shadows
       const Pixels& before = layers.depths[static_cast<std::size_t>(at - direction)];
       for (std::size_t i = 0; i < pixels; ++i) {
         const bool leans = before[i] > other[i] + layers.lean;

@@ -16,10 +16,16 @@ constexpr double kLeastShell = 1.0;        // of those: it opens shells by half 
 constexpr double kGrownAgain = 0.8;        // and grows them by this
 constexpr double kTopThickness = 0.7;      // mm, that solid layers have at least, if there are any
 constexpr double kBottomThickness = 0.5;
-constexpr double kLean = 0.2;  // line widths: it opens what looks up or down by half of this
+// The same from 2.6 on.
+constexpr double kShadowSince26 = 0.05;      // spacings
+constexpr double kLeastShellSince26 = 0.65;  // of the spacings of shells
+constexpr double kOverlapSince26 = 0.2;      // of those
+constexpr double kLean = 0.2;                // line widths: it opens what looks up or down by half of this
 
 // Fitted to the slicer's figures for three of the six models that they are held against.
 constexpr double kWidenedWalls = 0.4;  // spacings
+// Classic walls leave gaps of 0.6 spacings, overlap of infill included, to lines that fill gaps: so much of it is beyond the walls.
+constexpr double kGapBetweenWalls = 0.1;
 constexpr double kGyroidShare = 0.926;
 
 // Fitted to two of the models: at the border of modifiers, where infill is narrow, each line's end is joined along so much, mm.
@@ -37,6 +43,22 @@ int solid_layers(int asked_for, double thickness, double layer_height) {
   return std::max(asked_for, static_cast<int>(std::min(kMost, std::ceil(thickness / layer_height - 1e-4))));
 }
 
+// Skins grow after shells were found: by a spacing into sparse infill, further into what is solid anyway.
+void set_rules_since_2_6(ShellRules& rules, const PrintSettings& settings) {
+  const double shell_spacing = kShellSpacing * rules.spacing;
+  rules.has_narrow_skins = true;
+  rules.skin_margin = settings.perimeters > 0 ? rules.spacing : 0;
+  rules.shadow = rules.skin_shadow = kShadowSince26 * rules.spacing;
+  rules.least_shell = kLeastShellSince26 * shell_spacing;
+  rules.widening = kOverlapSince26 * shell_spacing;
+  rules.walls_cover = settings.vertical_shells == VerticalShells::enabled;
+  if (settings.vertical_shells != VerticalShells::disabled) return;
+  rules.shadow = 0;
+  rules.skin_shadow = rules.skin_margin;
+  rules.least_shell = settings.line_width;
+  rules.widening = 0;
+}
+
 }  // namespace
 
 ShellRules shell_rules(const PrintSettings& settings) {
@@ -46,16 +68,20 @@ ShellRules shell_rules(const PrintSettings& settings) {
     rules.wall = settings.line_width / 2 + (settings.perimeters - 0.5) * rules.spacing;
     rules.wall_density = settings.perimeters * rules.spacing / rules.wall;
     rules.fill = rules.wall - kInfillOverlap * rules.spacing;
-    rules.widened_walls = kWidenedWalls * rules.spacing;
+    rules.widened_walls =
+        (settings.walls == WallGenerator::classic ? kGapBetweenWalls : kWidenedWalls) * rules.spacing;
   }
   rules.top_layers = solid_layers(settings.top_layers, kTopThickness, settings.layer_height);
   rules.bottom_layers = solid_layers(settings.bottom_layers, kBottomThickness, settings.layer_height);
   rules.lean = kLean * settings.line_width;
   rules.skin_margin = kSkinMargin;
   rules.unsupported = kUnsupportedShare * kSkinMargin;
-  rules.shadow = kShellSpacing * rules.spacing;
-  rules.least_shell = kLeastShell * kShellSpacing * rules.spacing;
-  rules.widening = (kGrownAgain - kLeastShell / 2) * kShellSpacing * rules.spacing;
+  const double shell_spacing = kShellSpacing * rules.spacing;
+  rules.shadow = shell_spacing;
+  rules.skin_shadow = rules.skin_margin + rules.shadow;
+  rules.least_shell = kLeastShell * shell_spacing;
+  rules.widening = (kGrownAgain - kLeastShell / 2) * shell_spacing;
+  if (settings.rules == SolidRules::prusa_2_6) set_rules_since_2_6(rules, settings);
   return rules;
 }
 

@@ -4,7 +4,7 @@
 
 namespace aerate {
 
-// Where a slicer puts walls, solid and sparse infill in a layer: PrusaSlicer 2.5's rules
+// Where a slicer puts walls, solid and sparse infill in a layer: the rules of PrusaSlicer 2.5 or of 2.6 to 2.9
 // (PrintObject::discover_vertical_shells, LayerRegion::process_external_surfaces) and the values of its 0.2
 // mm profiles, as lengths in mm for a print's settings. docs/economics.md explains them.
 struct ShellRules {
@@ -17,11 +17,15 @@ struct ShellRules {
   double lean = 0;
   double skin_margin = 0;  // what looks up or down is printed so much wider than it is, into the infill
   double unsupported = 0;  // but into a modifier of 0 % only so far as less than this of one is below it
-  double shadow = 0;       // and its shadow in the next layers is wider than it by this
-  int top_layers = 0;      // layers of a skin that looks up with its shadow, and of one that looks down:
-  int bottom_layers = 0;   // as many as asked for, or as make up the least thickness of the profiles
-  double least_shell = 0;  // shells inside of the walls that are narrower are left out
-  double widening = 0;     // others reach this far into sparse infill
+  double shadow = 0;       // shadows of what looks up or down in the next layers are wider by this,
+  double skin_shadow = 0;  // those of skins amid infill, skin margin and all, by this
+  // Skins grow by no more than depths are known for, and before they do they cast their shadows.
+  bool has_narrow_skins = false;
+  bool walls_cover = true;  // a shell is also where walls of the layers above and below are
+  int top_layers = 0;       // layers of a skin that looks up with its shadow, and of one that looks down:
+  int bottom_layers = 0;    // as many as asked for, or as make up the least thickness of the profiles
+  double least_shell = 0;   // shells inside of the walls that are narrower are left out
+  double widening = 0;      // others reach this far into sparse infill
 };
 ShellRules shell_rules(const PrintSettings& settings);
 

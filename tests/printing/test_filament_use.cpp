@@ -167,6 +167,46 @@ TEST(FilamentUse, AGentleSlopeThatLeavesInfillFreeIsSkin) {
   }
 }
 
+// From 2.6 on skins grow by a spacing, shadows next to nothing, and shells may be narrower.
+TEST(FilamentUse, RulesSince26HaveNarrowerSkinsAndShells) {
+  PrintSettings settings{.infill = 0.2, .top_layers = 5, .bottom_layers = 0};
+  settings.rules = SolidRules::prusa_2_6;
+  const ShellRules rules = shell_rules(settings);
+  EXPECT_NEAR(rules.skin_margin, rules.spacing, 1e-9);
+  const double side = 80, height = 6, h = settings.layer_height;
+  const auto layers = std::lround(height / h);
+  const double step = rules.fill + 0.05;
+  const double solid = filament_use(tapered_block(80, 6, static_cast<float>(step)), settings).solid_mm3;
+  // Of each layer's ring, from where its infill begins: what the layers above leave free, or the skin beyond.
+  const double shell = (settings.top_layers - 1) * step + step + rules.shadow + rules.widening - rules.fill;
+  double expected = 0;
+  for (int k = 0; k < layers; ++k) {
+    const double outer = side - 2 * step * (k + 0.5) - 2 * rules.fill;
+    const double inner = k >= layers - settings.top_layers ? 0 : std::max(0.0, outer - 2 * shell);
+    expected += h * (outer * outer - inner * inner);
+  }
+  EXPECT_NEAR(solid, expected, 0.05 * expected);
+  settings.rules = SolidRules::prusa_2_5;
+  EXPECT_GT(filament_use(tapered_block(80, 6, static_cast<float>(step)), settings).solid_mm3, 1.2 * solid);
+}
+
+// Where no surface leaves infill free, only "enabled" fills along walls that lean.
+TEST(FilamentUse, VerticalShellsCanBeLeftToWhatLooksUpOrDown) {
+  const auto solid_of = [](VerticalShells shells, double step) {
+    PrintSettings settings{.infill = 0.2, .bottom_layers = 0};
+    settings.rules = SolidRules::prusa_2_6;
+    settings.vertical_shells = shells;
+    return filament_use(tapered_block(60, 20, static_cast<float>(step)), settings).solid_mm3;
+  };
+  const double steep = 0.2, straight = 0.0;
+  const double top = solid_of(VerticalShells::enabled, straight);
+  EXPECT_NEAR(solid_of(VerticalShells::partial, straight), top, 0.02 * top);
+  EXPECT_NEAR(solid_of(VerticalShells::disabled, straight), top, 0.02 * top);
+  const double enabled = solid_of(VerticalShells::enabled, steep);
+  EXPECT_LT(solid_of(VerticalShells::partial, steep), enabled);
+  EXPECT_LE(solid_of(VerticalShells::disabled, steep), 1.02 * solid_of(VerticalShells::partial, steep));
+}
+
 // As the slicer's profiles have it: at least 0.7 mm under what looks up and 0.5 mm over what looks down.
 TEST(FilamentUse, SolidLayersHaveALeastThickness) {
   const Mesh block = make_box({0, 0, 0}, {30, 30, 20});
