@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <span>
@@ -19,6 +20,7 @@ namespace {
 constexpr double kCell = 1;            // mm: some line widths
 constexpr double kStep = 0.25;         // mm: lines are spread in pieces of at most this
 constexpr double kLargestBed = 3000;   // mm
+constexpr double kOutline = 0.02;      // mm that two runs' outlines may differ by
 constexpr double kLongestPrint = 1e8;  // mm of lines: a fortnight at 80 mm/s
 
 struct Box {
@@ -39,6 +41,17 @@ Box box_of(std::span<const ExtrusionMove> moves, Box box = {}) {
     box.include(move.x, move.y);
   }
   return box;
+}
+
+// Above the first layer, if there is more than that.
+Box box_of_upper_layers(std::span<const ExtrusionMove> moves) {
+  if (moves.empty()) return {};
+  const auto layer_of = [](const ExtrusionMove& move) { return layer_at(move.z); };
+  const std::int64_t first = layer_of(*std::ranges::min_element(moves, {}, layer_of));
+  std::vector<ExtrusionMove> upper;
+  std::ranges::copy_if(moves, std::back_inserter(upper),
+                       [&](const ExtrusionMove& move) { return layer_of(move) > first; });
+  return upper.empty() ? box_of(moves) : box_of(upper);
 }
 
 // Moves by layer.
@@ -255,6 +268,24 @@ double outline_distance(const std::vector<ExtrusionMove>& moves_a,
                    std::abs(a.y_max - b.y_max)});
 }
 
+std::optional<BedPlace> shift_of(const std::vector<ExtrusionMove>& moves_a,
+                                 const std::vector<ExtrusionMove>& moves_b) {
+  // Less moves next to no filament; coordinates have three decimals.
+  constexpr double kSamePlace = 0.004;  // mm
+  const Box a = box_of_upper_layers(moves_a), b = box_of_upper_layers(moves_b);
+  const auto grown_by = [](double min_a, double max_a, double min_b, double max_b) {
+    return std::abs((max_a - min_a) - (max_b - min_b));
+  };
+  const double grown =
+      std::max(grown_by(a.x_min, a.x_max, b.x_min, b.x_max), grown_by(a.y_min, a.y_max, b.y_min, b.y_max));
+  const BedPlace shift{(a.x_min + a.x_max - b.x_min - b.x_max) / 2,
+                       (a.y_min + a.y_max - b.y_min - b.y_max) / 2};
+  // Neither holds for boxes of nothing.
+  if (!(grown <= kOutline) || !(std::max(std::abs(shift.x), std::abs(shift.y)) > kSamePlace))
+    return std::nullopt;
+  return shift;
+}
+
 PrintDifference compare_prints(const std::vector<ExtrusionMove>& a, const std::vector<ExtrusionMove>& b) {
   PrintDifference difference;
   const Box box = box_of(b, box_of(a));
@@ -290,7 +321,6 @@ std::optional<std::string> difference_of(const std::vector<ExtrusionMove>& a,
   // From run to run PrusaSlicer 2.5 moved up to 0.04 % of the filament, 0.8 % in the worst layer (seams at
   // random), and never the outline. A shift of 0.01 mm moves 0.3 %.
   constexpr double kFilament = 0.0015, kInOneLayer = 0.03;
-  constexpr double kOutline = 0.02;  // mm
   if (a.empty() || b.empty()) return "one of them extrudes nothing";
   if (const double distance = outline_distance(a, b); distance > kOutline)
     return fmt::format("its outline is {:.2f} mm off", distance);

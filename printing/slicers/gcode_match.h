@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "printing/slicers/bed.h"
 #include "printing/slicers/gcode.h"
 #include "printing/slicers/print_log.h"
 
@@ -22,6 +23,10 @@ struct PrintDifference {
 
 // The largest distance between the sides of two prints' outlines, mm.
 double outline_distance(const std::vector<ExtrusionMove>& a, const std::vector<ExtrusionMove>& b);
+
+// How far `a` is from `b`, if it looks like the same print at another place; nothing if it is at the same place, or of another
+// size. The first layer does not count: what is printed round and before an object is on it.
+std::optional<BedPlace> shift_of(const std::vector<ExtrusionMove>& a, const std::vector<ExtrusionMove>& b);
 
 // O(length of all moves + area of the larger print). Prints beyond three metres or a hundred kilometres of
 // lines count as different altogether.

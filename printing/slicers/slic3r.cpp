@@ -12,6 +12,7 @@
 #include "files/output_file.h"
 #include "files/text_scan.h"
 #include "files/three_mf.h"
+#include "printing/slicers/figure_values.h"
 #include "printing/slicers/gcode_machine.h"
 #include "printing/slicers/ini_settings.h"
 #include "printing/slicers/slicers.h"
@@ -21,34 +22,6 @@ namespace aerate {
 namespace {
 
 namespace fs = std::filesystem;
-
-// "1.5, 2.25" of several extruders.
-std::optional<double> sum_of(std::string_view text) {
-  std::optional<double> sum = take_number(text);
-  while (sum && trimmed(text).starts_with(',')) {
-    text = trimmed(text).substr(1);
-    const std::optional<double> next = take_number(text);
-    if (!next) return std::nullopt;
-    sum = *sum + *next;
-  }
-  return sum;
-}
-
-// "1d 2h 3m 4s"
-std::optional<double> seconds_of(std::string_view text) {
-  double seconds = 0;
-  bool found = false;
-  while (const std::optional<double> number = take_number(text)) {
-    constexpr std::array<std::pair<char, double>, 4> kUnits{{{'d', 86400}, {'h', 3600}, {'m', 60}, {'s', 1}}};
-    const auto unit = std::find_if(kUnits.begin(), kUnits.end(),
-                                   [&](const auto& each) { return text.starts_with(each.first); });
-    if (unit == kUnits.end()) return std::nullopt;
-    seconds += *number * unit->second;
-    found = true;
-    text.remove_prefix(1);
-  }
-  return found ? std::optional(seconds) : std::nullopt;
-}
 
 // The volume in "192.5mm (1.4cm3)".
 std::optional<double> number_in_brackets(std::string_view text) {
@@ -136,7 +109,8 @@ ChildCommand command_for(const fs::path& program, const SliceJob& job) {
 
 // Slic3r has no supports that are only painted; slicers that come from it say whether others are built.
 bool supports_everywhere(std::string_view gcode) {
-  return setting_in(gcode, "support_material") == "1" &&
+  const auto supports = setting_in(gcode, "support_material");
+  return (supports == "1" || supports == "everywhere") &&  // the latter in 3.0
          setting_in(gcode, "support_material_buildplate_only").value_or("0") == "0" &&
          setting_in(gcode, "support_material_auto").value_or("1") == "1";
 }

@@ -1,13 +1,16 @@
 #include "printing/slicers/slicers.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <fmt/ranges.h>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <unistd.h>
 
 #include "core/error.h"
+#include "printing/slicers/ini_settings.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
@@ -44,6 +47,17 @@ std::string space_left(const fs::path& file) {
   if (error || space.available > kPlenty) return "";
   return fmt::format(" (there are {} kB left in {}: set TMPDIR to a folder with more)",
                      space.available / 1024, file.parent_path().string());
+}
+
+// Of OrcaSlicer: one text, or a list of them.
+bool json_names_post_processing(std::string_view text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains(kPostProcess)) return false;
+  const nlohmann::json& value = json[kPostProcess];
+  const auto names_one = [](const nlohmann::json& each) {
+    return each.is_string() && !without_blanks(each.get_ref<const std::string&>()).empty();
+  };
+  return value.is_array() ? std::ranges::any_of(value, names_one) : names_one(value);
 }
 
 }  // namespace
@@ -92,27 +106,47 @@ void require_settings(const SlicerSettings& settings, const SlicerProfile& slice
   }
 }
 
-std::set<std::string, std::less<>> known_settings(const Slicer& slicer, const fs::path& scratch,
-                                                  Monitor& monitor) {
-  std::set<std::string, std::less<>> names;
-  if (slicer.profile->list_settings == nullptr) return names;
+SlicerFacts ask_slicer(const Slicer& slicer, const fs::path& scratch, Monitor& monitor) {
+  SlicerFacts facts;
+  if (slicer.profile->list_settings == nullptr) return facts;
   const fs::path file = scratch / "all-settings.ini";
   ChildCommand command = slicer.profile->list_settings(slicer.program, file);
   command.environment.emplace_back(kSlicedByVariable, "1");
   std::error_code error;
-  if (run_child(command, monitor).exit_code != 0 || !fs::is_regular_file(file, error)) return names;
-  for_each_line(read_text(file), [&](std::string_view line) {
+  if (run_child(command, monitor).exit_code != 0 || !fs::is_regular_file(file, error)) return facts;
+  const std::string text = read_text(file);
+  for (const std::string& program : slicer.profile->family)
+    if (!facts.version) facts.version = version_of(program, text);
+  for_each_line(text, [&](std::string_view line) {
     if (const auto setting = setting_in_line(line); setting && !line.starts_with('#'))
-      names.emplace(setting->key);
+      facts.settings.insert_or_assign(std::string(setting->key), std::string(setting->value));
     return true;
   });
-  return names;
+  return facts;
+}
+
+std::optional<BedPlace> place_for(const Slicer& slicer, const SlicerSettings& settings) {
+  const auto& from = slicer.profile->needs_place_from;
+  if (!from || !slicer.facts.version || *slicer.facts.version < *from) return std::nullopt;
+  constexpr std::string_view kBed = "bed_shape";
+  const auto own = slicer.facts.settings.find(kBed);
+  std::string corners = own == slicer.facts.settings.end() ? "" : own->second;
+  for (const fs::path& file : settings.files) {  // later ones win
+    for_each_line(plain_settings(read_text(file)), [&](std::string_view line) {
+      if (const auto setting = setting_in_line(line); setting && setting->key == kBed)
+        corners = setting->value;
+      return true;
+    });
+  }
+  return middle_of_bed(corners);
 }
 
 bool have_post_processing(const SlicerSettings& settings) {
   bool found = false;
   for (const fs::path& file : settings.files) {
-    for_each_line(read_text(file), [&](std::string_view line) {
+    const std::string text = read_text(file);
+    found = found || json_names_post_processing(text);
+    for_each_line(text, [&](std::string_view line) {
       found = found || names_post_processing(line);
       return !found;
     });

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +12,11 @@
 #include "core/monitor.h"
 #include "files/load.h"
 #include "printing/print_settings.h"
+#include "printing/slicers/bed.h"
 #include "printing/slicers/child_process.h"
 #include "printing/slicers/gcode.h"
 #include "printing/slicers/object_parts.h"
+#include "printing/slicers/slicer_version.h"
 
 namespace aerate {
 
@@ -27,8 +29,11 @@ struct SliceJob {
   std::filesystem::path model;  // STL or 3MF, mm
   std::filesystem::path gcode;  // to be written
   SlicerSettings settings;
-  std::string pattern = {};       // of sparse infill, instead of that of the settings, if not empty
-  bool keep_place = false;        // x and y as in the model instead of the middle of the bed
+  std::string pattern = {};  // of sparse infill, instead of that of the settings, if not empty
+  bool keep_place = false;   // x and y as in the model instead of the middle of the bed
+  // Where the middle of the model's box comes, if the slicer has to be told (place_for()); not with keep_place.
+  std::optional<BedPlace> place = {};
+  bool says_text = false;         // the slicer knows binary G-code, and has to be told that it writes text
   std::filesystem::path scratch;  // an existing folder for the slicer's files
 };
 
@@ -94,7 +99,7 @@ struct SlicerProfile {
   ChildCommand (*command)(const std::filesystem::path& program, const SliceJob& job) = nullptr;
   // If given: throws InputError for a file of settings that the slicer would take for others in silence.
   void (*check_settings)(const std::filesystem::path& file) = nullptr;
-  // If given: makes the slicer write all its settings to `file`, in lines "key = value".
+  // If given: makes the slicer write all its settings to `file`, in lines "key = value", after one that names it and its version.
   ChildCommand (*list_settings)(const std::filesystem::path& program,
                                 const std::filesystem::path& file) = nullptr;
   // If given: puts the G-code of a run where the job wants it, and gives figures that only its output says.
@@ -113,6 +118,9 @@ struct SlicerProfile {
   ProjectFacts (*project)(const std::filesystem::path& package) = nullptr;
   // The name of the object in its G-code, if the print is of one and it labels objects.
   std::optional<std::string> (*labelled_object)(std::string_view gcode) = nullptr;
+
+  // From this version on a model stays at its file's coordinates in some files and not in others.
+  std::optional<SlicerVersion> needs_place_from;
 
   // Absent for a slicer that reads no modifiers; voids are surfaces, which all of them take.
   std::optional<ModifierFormat> modifiers;
@@ -144,10 +152,17 @@ std::vector<VolumeList> volume_lists();
 std::vector<std::string> of_slicers(
     const std::function<std::vector<std::string>(const SlicerProfile&)>& texts);
 
+// What a slicer's program says of itself; nothing of it for one that does not tell.
+struct SlicerFacts {
+  std::optional<SlicerVersion> version;
+  std::map<std::string, std::string, std::less<>> settings;  // all that it knows, as they are by default
+};
+
 // A slicer's command line program.
 struct Slicer {
   const SlicerProfile* profile = nullptr;
   std::filesystem::path program;
+  SlicerFacts facts = {};  // if it was asked
 };
 
 // The program at `path` or, without one, the first of the slicer's usual names on the search path. Throws
@@ -157,9 +172,12 @@ Slicer find_slicer(const SlicerProfile& profile, const std::filesystem::path& pa
 // Throws InputError for a settings file that cannot be read, or that this slicer would not take for what it is.
 void require_settings(const SlicerSettings& settings, const SlicerProfile& slicer);
 
-// The names of all settings that a slicer knows; empty if it does not tell. `scratch`: an existing folder.
-std::set<std::string, std::less<>> known_settings(const Slicer& slicer, const std::filesystem::path& scratch,
-                                                  Monitor& monitor);
+// Runs a slicer to ask for its version and settings. `scratch`: an existing folder.
+SlicerFacts ask_slicer(const Slicer& slicer, const std::filesystem::path& scratch, Monitor& monitor);
+
+// Where a slicer that was asked has to put a model, so that each form of it comes to one place: the middle of the bed of these
+// settings. Nothing for one that centres whatever it loads.
+std::optional<BedPlace> place_for(const Slicer& slicer, const SlicerSettings& settings);
 
 // True if the settings name programs to be run on the G-code.
 bool have_post_processing(const SlicerSettings& settings);

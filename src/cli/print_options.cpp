@@ -39,6 +39,30 @@ const char* name_of(PrintSetting setting) {
       return "top_layers";
     case PrintSetting::bottom_layers:
       return "bottom_layers";
+    case PrintSetting::slicer_version:
+      return "slicer_version";
+    case PrintSetting::vertical_shells:
+      return "vertical_shells";
+    case PrintSetting::walls:
+      return "wall_generator";
+  }
+  return "unknown";
+}
+
+// Those that decide whose rules hold are told where they were given alone.
+bool is_of_rules(PrintSetting setting) {
+  return setting == PrintSetting::slicer_version || setting == PrintSetting::vertical_shells ||
+         setting == PrintSetting::walls;
+}
+
+const char* name_of(VerticalShells shells) {
+  switch (shells) {
+    case VerticalShells::enabled:
+      return "enabled";
+    case VerticalShells::partial:
+      return "partial";
+    case VerticalShells::disabled:
+      return "disabled";
   }
   return "unknown";
 }
@@ -60,6 +84,13 @@ std::string in_words(PrintSetting setting, const HollowOptions& options) {
       return fmt::format("{} top", print.top_layers);
     case PrintSetting::bottom_layers:
       return fmt::format("{} bottom", print.bottom_layers);
+    case PrintSetting::slicer_version:
+      return print.rules == SolidRules::prusa_2_5 ? "rules of PrusaSlicer 2.5"
+                                                  : "rules of PrusaSlicer 2.6 to 2.9";
+    case PrintSetting::vertical_shells:
+      return fmt::format("vertical shells {}", name_of(print.vertical_shells));
+    case PrintSetting::walls:
+      return print.walls == WallGenerator::classic ? "classic walls" : "Arachne's walls";
   }
   return "";
 }
@@ -107,9 +138,23 @@ PrintOptions::PrintOptions(CLI::App& command, const ConfigFile& config) : config
       ->check(CLI::Range(0, 1000))
       ->type_name("N")
       ->capture_default_str();
+  add(PrintSetting::slicer_version, "--slicer-version", version_,
+      "Version of PrusaSlicer, whose rules of solid infill changed in 2.6")
+      ->check(parsed_by(parse_version, "is not a version such as 2.9"))
+      ->type_name("VERSION")
+      ->capture_default_str();
+  add(PrintSetting::vertical_shells, "--vertical-shells", shells_,
+      "\"Ensure vertical shell thickness\" of PrusaSlicer 2.9")
+      ->check(CLI::IsMember({"enabled", "partial", "disabled"}))
+      ->type_name("WHICH")
+      ->capture_default_str();
+  add(PrintSetting::walls, "--wall-generator", walls_, "arachne or classic")
+      ->check(CLI::IsMember({"arachne", "classic"}))
+      ->type_name("WHICH")
+      ->capture_default_str();
   file_option_ = command
                      .add_option("--print-settings", file_,
-                                 "Take these seven from a slicer's file where they are not given: settings "
+                                 "Take these from a slicer's file where they are not given: settings "
                                  "that it exported (.ini "
                                  "of PrusaSlicer, SuperSlicer or Slic3r, JSON of OrcaSlicer or Bambu "
                                  "Studio), G-code, or a project "
@@ -136,6 +181,11 @@ FoundPrintSettings PrintOptions::read() const {
   if (known.which.contains(PrintSetting::infill)) known.settings.infill = parse_percent(infill_).value();
   if (known.which.contains(PrintSetting::pattern))
     known.settings.pattern = pattern_ == "gyroid" ? InfillPattern::gyroid : InfillPattern::lines;
+  if (known.which.contains(PrintSetting::slicer_version))
+    known.settings.rules = rules_of(parse_version(version_).value());
+  if (known.which.contains(PrintSetting::vertical_shells))
+    known.settings.vertical_shells = parse_vertical_shells(shells_).value();
+  if (known.which.contains(PrintSetting::walls)) known.settings.walls = parse_walls(walls_).value();
   if (file_option_->count() > 0) return read_print_settings(file_, known);
   return {known.settings, {}, {}};
 }
@@ -173,7 +223,10 @@ HollowOptions PrintOptions::applied_to(HollowOptions options) const {
                      "a print is refused only if its infill is known");
   options.heavier = force_ ? HeavierPrint::allow : HeavierPrint::refuse;
   if (described != nullptr) {
-    for (const Row& row : rows_) options.print_origins.push_back(origin_of(row.setting, found, options));
+    for (const Row& row : rows_) {
+      if (is_known(row.setting) || !is_of_rules(row.setting))
+        options.print_origins.push_back(origin_of(row.setting, found, options));
+    }
   }
   if (is_known(PrintSetting::line_width))
     options.line_width_origin = origin_of(PrintSetting::line_width, found, options).origin;

@@ -12,7 +12,7 @@
 namespace aerate::cli {
 
 // --infill, --infill-pattern, --perimeters, --line-width, --layer-height, --top-layers, --bottom-layers,
-// --print-settings, --force
+// --slicer-version, --vertical-shells, --wall-generator, --print-settings, --force
 class PrintOptions {
  public:
   PrintOptions(CLI::App& command, const ConfigFile& config);
@@ -45,6 +45,7 @@ class PrintOptions {
   CLI::Option* file_option_ = nullptr;
   std::string file_;
   std::string pattern_ = "gyroid";
+  std::string version_ = "2.5", shells_ = "enabled", walls_ = "arachne";
   PrintSettings settings_;
   bool force_ = false;
 };

@@ -67,15 +67,6 @@ Slicer slicer_of(const GcodeOrigin& origin, const HookOptions& options) {
   return find_slicer(*origin.slicer, options.request.slicer_path);
 }
 
-// A hollowed model prints within the same outline.
-void require_same_place(const SlicedForm& form, const std::vector<ExtrusionMove>& original) {
-  constexpr double kLineWidth = 1;  // mm, more than that of any: seams and fills may differ
-  const double distance = outline_distance(extrusion_moves(read_text(form.gcode)), original);
-  if (distance > kLineWidth)
-    throw FailureError(fmt::format("the slicer put the model with {} elsewhere, {:.1f} mm off",
-                                   name_of(form.form), distance));
-}
-
 // What the G-code holds that is compared with what the model gives.
 struct Original {
   explicit Original(std::string_view gcode)
@@ -87,6 +78,17 @@ struct Original {
   PrintLog log;
   bool has_fuzzy_skin;
 };
+
+// The solid model where the print is, if the slicer puts it where it is told.
+SlicedForm slice_solid_in_place(FormJob& job, const Original& original, Monitor& monitor) {
+  SlicedForm solid = slice_solid(job, monitor);
+  if (!job.place) return solid;
+  const auto shift = shift_of(original.moves, extrusion_moves(read_text(solid.gcode)));
+  if (!shift) return solid;
+  job.place->x += shift->x;
+  job.place->y += shift->y;
+  return slice_solid(job, monitor);
+}
 
 void require_match(const Original& original, const SlicedForm& solid, const Slicer& slicer,
                    const GcodeOrigin& origin, const HookOptions& options) {
@@ -209,24 +211,26 @@ std::string joined(const std::vector<std::string>& remarks) {
 // Solid, then hollowed as far as that is possible.
 void slice_forms(const std::string& original, const HookOptions& options, const fs::path& scratch,
                  HookReport& report, JobLog& log) {
-  const Slicer slicer = slicer_of(report.origin, options);
+  Slicer slicer = slicer_of(report.origin, options);
   require_settings_in(original, options);
   const FormRequest& request = options.request;
   const std::vector<PrintForm> hollowed = forms_to_try(request.form, *slicer.profile);
   // A slicer tells G-code by its ending, and the file that a script gets may have another.
   const fs::path settings = scratch / "settings.gcode";
   write_bytes(original, settings);
+  slicer.facts = ask_slicer(slicer, scratch, log);
   const fs::path& model = request.hollow.model;
   const ProjectFacts facts = facts_of_project(options, slicer);
-  const FormJob job{request,
-                    slicer,
-                    {{settings}},
-                    scratch,
-                    is_project(model),
-                    object_name_in(original, facts, slicer, model),
-                    has_supports_everywhere(*slicer.profile, original)};
+  FormJob job{request,
+              slicer,
+              {{settings}},
+              scratch,
+              is_project(model),
+              object_name_in(original, facts, slicer, model),
+              has_supports_everywhere(*slicer.profile, original)};
+  if (!job.keep_place) job.place = place_for(slicer, job.settings);
   const Original read(original);
-  const SlicedForm solid = slice_solid(job, log);
+  const SlicedForm solid = slice_solid_in_place(job, read, log);
   log.stage("compare");
   require_match(read, solid, slicer, report.origin, options);
   report.forms.front().slicer_seconds = solid.slicer_seconds;
@@ -236,7 +240,7 @@ void slice_forms(const std::string& original, const HookOptions& options, const 
     TriedForms tried = slice_hollowed(hollowed, job, report.print, log);
     report.skipped = std::move(tried.skipped);
     for (SlicedForm& form : tried.sliced) {
-      require_same_place(form, read.moves);
+      if (const auto displacement = displacement_of(form, read.moves)) throw FailureError(*displacement);
       if (auto loss = loss_in(form, read)) {
         losses.push_back(std::move(*loss));
       } else {

@@ -19,10 +19,14 @@
 #include "pipeline/print_prediction.h"
 #include "pipeline/scene_of.h"
 #include "pipeline/solid_file.h"
+#include "printing/slicers/gcode_match.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
 namespace {
+
+// A setting of PrusaSlicer from 2.7 on.
+constexpr const char* kBinaryGcode = "binary_gcode";
 
 // Of a form, in the scratch folder.
 std::filesystem::path folder_of(const std::string& name, const FormJob& job) {
@@ -107,6 +111,8 @@ SlicedForm slice_file(PrintForm form, std::filesystem::path model, const FormJob
                           .settings = job.settings,
                           .pattern = pattern,
                           .keep_place = job.keep_place,
+                          .place = job.keep_place ? std::nullopt : job.place,
+                          .says_text = job.slicer.facts.settings.contains(kBinaryGcode),
                           .scratch = folder},
                          monitor);
   sliced.slicer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -350,6 +356,13 @@ TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& jo
   }
   if (all_refused && refusal) throw NothingToRemoveError(*refusal);
   return tried;
+}
+
+std::optional<std::string> displacement_of(const SlicedForm& form, const std::vector<ExtrusionMove>& solid) {
+  constexpr double kLineWidth = 1;  // mm, more than that of any: seams and fills may differ
+  const double distance = outline_distance(extrusion_moves(read_text(form.gcode)), solid);
+  if (distance <= kLineWidth) return std::nullopt;
+  return fmt::format("the slicer put the model with {} elsewhere, {:.1f} mm off", form.name(), distance);
 }
 
 double filament_saved(const GcodeFigures& solid, const GcodeFigures& other) {

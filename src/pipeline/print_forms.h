@@ -93,6 +93,7 @@ struct FormJob {
   std::string object_name = {};
   bool supports_everywhere = false;  // the print has them wherever they are wanted, so in voids too
   bool wants_scenes = false;
+  std::optional<BedPlace> place = {};  // see SliceJob
 };
 
 // Whether a model is a slicer's project, or may be one.
@@ -123,6 +124,9 @@ TriedForms slice_patterns(const std::vector<SparsePattern>& patterns, const Slic
 // Throws what hollow() and slice() throw, NothingToRemoveError if nothing can be removed for any.
 TriedForms slice_hollowed(const std::vector<PrintForm>& forms, const FormJob& job,
                           const std::optional<DescribedPrint>& print, Monitor& monitor);
+
+// Why a form is no print of the model where the solid one is: the slicer put it elsewhere. Nothing if it is there.
+std::optional<std::string> displacement_of(const SlicedForm& form, const std::vector<ExtrusionMove>& solid);
 
 // Filament as the slicer gives it, in a unit that both have; fraction of `solid` that `other` saves. Throws
 // FailureError if the slicer gives none.

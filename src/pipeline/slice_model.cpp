@@ -80,10 +80,9 @@ SlicerSettings settings_with_project(const SliceModelOptions& options, const std
 }
 
 // Slicers say nothing of settings that they do not know, and print with their defaults.
-void require_known_settings(const SliceModelOptions& options, const Slicer& slicer,
-                            const std::filesystem::path& scratch, JobLog& log) {
-  if (options.settings.files.empty()) return;
-  const auto known = known_settings(slicer, scratch, log);
+void require_known_settings(const SliceModelOptions& options, const Slicer& slicer, JobLog& log) {
+  std::set<std::string, std::less<>> known;
+  for (const auto& [key, value] : slicer.facts.settings) known.insert(key);
   if (known.empty()) return;
   for (const std::filesystem::path& file : options.settings.files) {
     const SettingNames names = names_in(plain_settings(read_text(file)), known);
@@ -99,8 +98,17 @@ void require_known_settings(const SliceModelOptions& options, const Slicer& slic
   }
 }
 
-void add(SliceReport& report, TriedForms tried) {
-  std::ranges::move(tried.sliced, std::back_inserter(report.forms));
+// Without forms that the slicer put elsewhere than the solid print. Throws FailureError if that was asked for.
+void add(SliceReport& report, TriedForms tried, const FormJob& job) {
+  const std::vector<ExtrusionMove> solid = extrusion_moves(read_text(report.forms.front().gcode));
+  for (SlicedForm& form : tried.sliced) {
+    if (const auto displacement = displacement_of(form, solid)) {
+      if (job.request.form) throw FailureError(*displacement);
+      report.skipped.push_back({form.name(), std::nullopt, *displacement});
+    } else {
+      report.forms.push_back(std::move(form));
+    }
+  }
   std::ranges::move(tried.skipped, std::back_inserter(report.skipped));
 }
 
@@ -108,7 +116,7 @@ void add(SliceReport& report, TriedForms tried) {
 void slice_what_can_be_hollowed(const std::vector<PrintForm>& forms, const FormJob& job, SliceReport& report,
                                 JobLog& log) {
   try {
-    add(report, slice_hollowed(forms, job, report.print, log));
+    add(report, slice_hollowed(forms, job, report.print, log), job);
   } catch (const NothingToRemoveError& error) {
     if (job.request.form) throw;
     log.notice(std::string(error.what()) + "; the solid model is what was written");
@@ -147,7 +155,7 @@ void slice_what_can_be_sparse(std::vector<SparsePattern> patterns, const FormJob
       return;
     }
   }
-  add(report, slice_patterns(patterns, report.forms.front(), job, log));
+  add(report, slice_patterns(patterns, report.forms.front(), job, log), job);
 }
 
 // Of the form that is written, with the slicer's figures.
@@ -200,9 +208,11 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
   AnnouncedFile pending(options.output, log);
   ViewFiles views(options.views, log);
   const PrivateFolder scratch(log);
-  require_known_settings(options, report.slicer, scratch.path(), log);
+  report.slicer.facts = ask_slicer(report.slicer, scratch.path(), log);
+  require_known_settings(options, report.slicer, log);
   FormJob job{request, report.slicer, settings_with_project(options, scratch.path(), log), scratch.path()};
   job.wants_scenes = options.views.are_asked_for();
+  job.place = place_for(job.slicer, job.settings);
   report.forms.push_back(slice_solid(job, log));
   // What the print is decides what is worth slicing.
   {

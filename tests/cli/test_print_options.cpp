@@ -57,6 +57,21 @@ TEST(PrintOptions, SparsePrintsThatWouldBecomeHeavierAreRefusedWithFigures) {
   EXPECT_FALSE(contains(refused.err, "are made")) << refused.err;
 }
 
+TEST(PrintOptions, TheVersionOfTheSlicerChangesThePrediction) {
+  const Job job;
+  const auto report = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--infill", "60%", "--shape", "spheres", "--force"});
+    return report_of(job, block(), more);
+  };
+  const Json older = report({}), named = report({"--slicer-version", "2.5.2"}),
+             newer = report({"--slicer-version", "2.9"});
+  EXPECT_EQ(older["print"]["filament_after_mm3"], named["print"]["filament_after_mm3"]);
+  EXPECT_LT(newer["print"]["filament_after_mm3"], older["print"]["filament_after_mm3"]);
+  EXPECT_EQ(newer["print"]["origins"].back()["value"], "rules of PrusaSlicer 2.6 to 2.9");
+  EXPECT_NE(older["print"]["origins"].back()["name"], "slicer_version");
+  expect_refused(job, {"--slicer-version", "new"}, kUsage, {"'new' is not a version such as 2.9"});
+}
+
 TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
   const Job job;
   const auto cube = [](float edge) { return make_box({0, 0, 0}, {edge, edge, edge}); };

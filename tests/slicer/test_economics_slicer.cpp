@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/formats.h"
+#include "printing/slicers/slicer_version.h"
 #include "tests/support/files.h"
 #include "tests/support/process.h"
 #include "tests/support/shapes.h"
@@ -41,7 +42,7 @@ double filament_mm3(const std::filesystem::path& model, const std::string& infil
                                     "5",
                                     "--bottom-solid-layers",
                                     "4",
-                                    "--ensure-vertical-shell-thickness",
+                                    "--ensure-vertical-shell-thickness=1",
                                     "--no-thick-bridges",
                                     "--no-extra-perimeters",
                                     "--first-layer-height",
@@ -70,6 +71,11 @@ double filament_mm3(const std::filesystem::path& model, const std::string& infil
   return 0;
 }
 
+// As the program calls itself; whose rules hold is told by it.
+SlicerVersion version_of_slicer() {
+  return version_of("PrusaSlicer", run({kSlicer, "--help"}).out).value_or(SlicerVersion{2, 5, 0});
+}
+
 class EconomicsSlicer : public testing::Test {
  protected:
   void SetUp() override {
@@ -82,9 +88,20 @@ class EconomicsSlicer : public testing::Test {
     const auto hollow = folder_.path() / (modifiers ? "hollow.3mf" : "hollow.stl");
     for (const std::string& infill : infills) {
       SCOPED_TRACE(model.filename().string() + " at " + infill);
-      std::vector<std::string> command{AERATE_EXECUTABLE, "hollow", model,      "-o",   hollow,
-                                       "--json",          "-",      "--infill", infill, "--force",
-                                       "--tolerance",     "0.1"};
+      std::vector<std::string> command{AERATE_EXECUTABLE,
+                                       "hollow",
+                                       model,
+                                       "-o",
+                                       hollow,
+                                       "--json",
+                                       "-",
+                                       "--infill",
+                                       infill,
+                                       "--force",
+                                       "--tolerance",
+                                       "0.1",
+                                       "--slicer-version",
+                                       to_text(version_of_slicer())};
       command.insert(command.end(), limits.begin(), limits.end());
       const ProcessResult result = run(command);
       ASSERT_EQ(result.exit_code, 0) << result.err;

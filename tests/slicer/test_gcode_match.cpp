@@ -46,6 +46,22 @@ Moves moved(Moves moves, double dx) {
   return moves;
 }
 
+TEST(GcodeMatch, ThePlaceOfTheSamePrintIsFound) {
+  const Moves a = tower(10, 0);
+  Moves b = moved(tower(10, 37), -12.5);
+  // A line in the first layer that stays where it is, as those before a print do.
+  Moves begun = a;
+  for (Moves* print : {&begun, &b}) add_line(*print, 0, 0, 60, 0, 0.2);
+  const auto shift = shift_of(begun, b);
+  ASSERT_TRUE(shift.has_value());
+  EXPECT_NEAR(shift->x, 12.5, 1e-9);
+  EXPECT_NEAR(shift->y, 0, 1e-9);
+  EXPECT_FALSE(shift_of(a, tower(10, 37)).has_value());
+  EXPECT_FALSE(shift_of(a, moved(tower(10, 0, 12.1), 5)).has_value());  // of another size
+  EXPECT_FALSE(shift_of(a, {}).has_value());
+  EXPECT_FALSE(shift_of({}, {}).has_value());
+}
+
 TEST(GcodeMatch, SeamsAndOrderDoNotMatter) {
   const Moves a = tower(10, 0);
   EXPECT_FALSE(difference_of(a, a).has_value());

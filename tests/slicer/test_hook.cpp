@@ -160,6 +160,52 @@ TEST_F(Hook, BlanksPostProcessingForTheSlicer) {
   EXPECT_TRUE(contains(read_bytes(folder_.path() / "arguments"), "|--post-process||"));
 }
 
+// From 2.8 on meshes are arranged and 3MF stays where its coordinates are, and binary G-code may be switched on.
+TEST_F(Hook, TellsANewerSlicerWhereTheModelIsAndToWriteText) {
+  const auto arguments = [&](const std::string& version) {
+    fs::remove(fake_.folder() / "arguments");
+    fake_.behave(FakeSlicer::as_version(version));
+    write_gcode(fake_gcode(1000));
+    EXPECT_EQ(hook(with_model()).exit_code, 0);
+    EXPECT_TRUE(contains(read_bytes(gcode()), "; aerate_result = modifiers\n"));
+    return read_bytes(fake_.folder() / "arguments");
+  };
+  const std::string newer = arguments("2.9.4");
+  EXPECT_EQ(std::ranges::count(newer, '\n'), 3);
+  std::size_t told = 0;
+  for (std::size_t at = 0;
+       (at = newer.find("|--dont-arrange|--center|125,105|--binary-gcode=0|", at)) != std::string::npos; ++at)
+    ++told;
+  EXPECT_EQ(told, 3u) << newer;
+  const std::string older = arguments("2.7.4");
+  EXPECT_FALSE(contains(older, "--center"));
+  EXPECT_TRUE(contains(older, "|--binary-gcode=0|"));
+}
+
+// By the settings in the G-code.
+TEST_F(Hook, PutsTheModelInTheMiddleOfThePrintsBed) {
+  fake_.behave(FakeSlicer::as_version("2.9.4"));
+  std::string print = fake_gcode(1000);
+  const std::string line = "; layer_height";
+  print.insert(print.find(line), "; bed_shape = 10x0,190x0,190x180,10x180\n");
+  write_gcode(print);
+  ASSERT_EQ(hook(with_model()).exit_code, 0);
+  EXPECT_TRUE(contains(read_bytes(fake_.folder() / "arguments"), "|--center|100,90|"));
+}
+
+TEST_F(Hook, FindsAModelThatWasMovedOnThePlate) {
+  fs::create_directory(fake_.folder() / "moved");
+  for (const auto& [form, filament] : {std::pair("solid", 1000.0), {"voids", 900.0}, {"modifiers", 800.0}})
+    fake_.hands_out(std::string("moved/") + form, fake_gcode(filament, 30));
+  fake_.behave(FakeSlicer::as_version("2.9.4") +
+               "case \"$*\" in *'--center 155,105 '*) cp \"$(dirname \"$0\")\"/moved/* \"$(dirname "
+               "\"$0\")\";; esac\n");
+  write_gcode(fake_gcode(1000, 30));
+  const ProcessResult result = hook(with_model());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(read_bytes(gcode()), "; aerate_result = modifiers\n"));
+}
+
 TEST_F(Hook, LeavesTheMovesWhenNoFormTakesLess) {
   fake_.hands_out("voids", fake_gcode(1200));
   fake_.hands_out("modifiers", fake_gcode(1000));

@@ -85,6 +85,22 @@ TEST_F(ModifiersIn3mf, ThePatternInsideIsNamedWhereTheSlicerHasIt) {
   }
 }
 
+// Alphas of PrusaSlicer 3.0 read modifiers of its own packages alone, of versions that it takes for older ones; OrcaSlicer asks
+// about those of Bambu Studio, and its command line crashes.
+TEST_F(ModifiersIn3mf, PackagesSayWhoMadeThem) {
+  const Solid solid = box_with_a_void();
+  const auto application = [&](const SlicerProfile& slicer) {
+    const std::string model = read_3mf_entry(file(solid, 0, slicer), kThreeMfModel);
+    const std::string begin = "<metadata name=\"Application\">";
+    const std::size_t at = model.find(begin) + begin.size();
+    return model.substr(at, model.find('<', at) - at);
+  };
+  const std::string prusa = application(prusa_slicer());
+  ASSERT_TRUE(prusa.starts_with("PrusaSlicer-")) << prusa;
+  EXPECT_LT(version_of("PrusaSlicer", prusa).value(), (SlicerVersion{2, 99, 0}));
+  EXPECT_TRUE(application(orca_slicer()).starts_with("aerate ")) << application(orca_slicer());
+}
+
 TEST_F(ModifiersIn3mf, FilesThatAreCutOffAreNoticed) {
   const Solid solid = box_with_a_void();
   for (const SlicerProfile& slicer : those_that_take_them()) {

@@ -252,6 +252,40 @@ TEST_F(Slicing, ShowsAllThatAFailingSlicerPrinted) {
   EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
 }
 
+TEST_F(Slicing, FormsThatTheSlicerPutsElsewhereAreLeftOut) {
+  const FakeSlicer fake(folder_);
+  fake.behave(FakeSlicer::as_version("2.9.4"));
+  fake.hands_out("solid", fake_gcode(1000));
+  fake.hands_out("voids", fake_gcode(900));
+  fake.hands_out("modifiers", fake_gcode(800, 81.4));
+  const std::vector<std::string> options{"--slicer-path", fake.program(), "--compare", "forms"};
+  const ProcessResult result = slice(block(), "prusa-slicer", options);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "elsewhere, 81.4 mm off")) << result.out;
+  EXPECT_EQ(read_bytes(output()), fake_gcode(900));
+  EXPECT_TRUE(contains(read_bytes(fake.folder() / "arguments"), "|--dont-arrange|--center|125,105|"));
+  fs::remove(output());
+  const ProcessResult asked =
+      slice(block(), "prusa-slicer", {"--slicer-path", fake.program(), "--as", "modifiers"});
+  EXPECT_EQ(asked.exit_code, 1);
+  EXPECT_TRUE(contains(asked.err, "elsewhere, 81.4 mm off"));
+  EXPECT_EQ(entries_of(outputs()), std::vector<std::string>{});
+}
+
+TEST_F(Slicing, TheBedOfTheSettingsIsTheOneThatCounts) {
+  const FakeSlicer fake(folder_);
+  fake.behave(FakeSlicer::as_version("2.9.4"));
+  for (const char* form : {"solid", "voids", "modifiers"}) fake.hands_out(form, fake_gcode(1000));
+  const fs::path first =
+      folder_.write("first.ini", "bed_shape = 0x0,100x0,100x100,0x100\nlayer_height = 0.3\n");
+  const fs::path second = folder_.write("second.ini", "bed_shape = 0x0,180x0,180x180,0x180\n");
+  const ProcessResult result =
+      slice(block(), "prusa-slicer",
+            {"--slicer-path", fake.program(), "--compare", "forms", "--config", first, "--config", second});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(read_bytes(fake.folder() / "arguments"), "|--center|90,90|"));
+}
+
 TEST_F(Slicing, RefusesProcessesThatPrintNoFilament) {
   const FakeSlicer fake(folder_);
   for (const char* process : {"sla", "sls", "metal"}) {
