@@ -262,6 +262,7 @@ SlicerProfile prusa_slicer() {
       .file = file_for,
       .named = named,
       .read = read_parts,
+      .elsewhere = "OrcaSlicer and Bambu Studio would print it as one solid body: --flavor orca is for these",
       .has_lightning = true,
       .has_blockers = true};
   row.patterns = sparse_patterns();

@@ -62,6 +62,7 @@ struct ModifierFormat {
   std::vector<ObjectPart> (*read)(const std::filesystem::path& file) = nullptr;
   // The mesh of such a file, parts in order; null for 3MF, which is read as any model is. Throws FailureError as well.
   Mesh (*read_mesh)(const std::filesystem::path& file) = nullptr;
+  std::string elsewhere = {};  // what other slicers make of such a file, and what else to mind, in words
   bool has_lightning = false;  // the infill kLightning
   bool has_blockers = false;   // volumes in which no supports are built
 };

@@ -313,6 +313,7 @@ void add_volume(Lines& lines, const HollowReport& report) {
     const SlicerProfile& slicer = *report.modifiers->slicer;
     lines.add("", "for {}{}; nothing is removed, and no walls are printed round them",
               listed(slicer.family, "and"), slicer.untested ? " (untested)" : "");
+    if (!slicer.modifiers->elsewhere.empty()) lines.add("", "{}", slicer.modifiers->elsewhere);
     return;
   }
   lines.add("removed", "{:.1f} of {:.1f} mm3 ({:.2f} %), {:.1f} mm3 left{}", output.volume_removed,

@@ -183,7 +183,10 @@ std::string to_text(const HookReport& report) {
 std::string to_json(const SliceReport& report) {
   Json json = report_header("slice");
   json["model"] = report.model.string();
-  json["slicer"] = {{"name", report.slicer.profile->name}, {"program", report.slicer.program.string()}};
+  const auto& version = report.slicer.facts.version;
+  json["slicer"] = {{"name", report.slicer.profile->name},
+                    {"program", report.slicer.program.string()},
+                    {"version", version ? Json(to_text(*version)) : Json(nullptr)}};
   json["forms"] = json_of(report.forms, uses_of(report));
   json["not_sliced"] = json_of(report.skipped);
   json["least"] = report.lightest().name();
