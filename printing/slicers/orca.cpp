@@ -210,8 +210,9 @@ SlicerProfile orca_slicer() {
       .file = file_for,
       .named = named,
       .read = read_parts,
-      .elsewhere = "open it as a project: an import into an open one may lose the infill; PrusaSlicer would "
-                   "print two bodies in one place: --flavor prusa is for that",
+      .elsewhere =
+          "open it as a project: an import into an open one may lose the infill; PrusaSlicer would "
+          "print two bodies in one place: --flavor prusa is for that",
       .has_lightning = true,
       .has_blockers = true};
   row.supports_everywhere = supports_everywhere;

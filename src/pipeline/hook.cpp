@@ -45,8 +45,9 @@ std::string read_gcode(const fs::path& path) {
   if (!fs::is_regular_file(path, error)) throw InputError(path.string() + ": is not a file");
   std::string text = read_text(path);
   if (is_binary_gcode(text)) {
-    throw InputError(path.string() + ": is binary G-code, which a script cannot edit",
-                     "switch binary G-code off in the slicer's printer settings");
+    throw InputError(
+        path.string() + ": is binary G-code, which a script cannot edit",
+        "switch off \"Supports binary G-code\" in the slicer's printer settings (Printers, General)");
   }
   if (origin_of(text).slicer == nullptr || !extrudes(text)) {
     throw InputError(path.string() + ": is not G-code of a slicer that is known here",

@@ -433,7 +433,7 @@ TEST_F(Hook, KeepsALog) {
 
 TEST_F(Hook, RefusesBinaryGcode) {
   write_gcode(std::string("GCDE\1\0\0\0\0\0", 10));
-  EXPECT_TRUE(contains(expect_refused(with_model(), 3), "binary G-code"));
+  EXPECT_TRUE(contains(expect_refused(with_model(), 3), "switch off \"Supports binary G-code\""));
 }
 
 TEST_F(Hook, RefusesWhatIsNoGcodeOfASlicer) {

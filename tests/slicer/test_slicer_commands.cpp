@@ -279,10 +279,9 @@ TEST_F(Slicing, TheBedOfTheSettingsIsTheOneThatCounts) {
   const fs::path first =
       folder_.write("first.ini", "bed_shape = 0x0,100x0,100x100,0x100\nlayer_height = 0.3\n");
   const fs::path second = folder_.write("second.ini", "bed_shape = 0x0,180x0,180x180,0x180\n");
-  const ProcessResult result =
-      slice(block(), "prusa-slicer",
-            {"--slicer-path", fake.program(), "--compare", "forms", "--config", first, "--config", second,
-             "--json", "-"});
+  const ProcessResult result = slice(block(), "prusa-slicer",
+                                     {"--slicer-path", fake.program(), "--compare", "forms", "--config",
+                                      first, "--config", second, "--json", "-"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(Json::parse(result.out)["slicer"]["version"].get<std::string>(), "2.9.4");
   EXPECT_TRUE(contains(read_bytes(fake.folder() / "arguments"), "|--center|90,90|"));
