@@ -112,7 +112,10 @@ class Hook : public testing::Test {
     write_gcode(before_);
     options.push_back("--strict");
     const ProcessResult strict = hook(options, environment);
-    return expect_error(strict, exit_code);
+    std::string why = expect_error(strict, exit_code);
+    // For bench/bench_hook_refusals.
+    RecordProperty("refusal_" + std::to_string(++refusals_), std::to_string(exit_code) + " " + why);
+    return why;
   }
   void expect_nothing_left() const {
     EXPECT_EQ(entries_of(scratch()), std::vector<std::string>{});
@@ -124,6 +127,7 @@ class Hook : public testing::Test {
   fs::path model_;
   std::string name_ = "part.gcode.pp";
   std::string before_;
+  int refusals_ = 0;
 };
 
 TEST_F(Hook, ReplacesTheGcodeByTheBestForm) {
