@@ -58,7 +58,7 @@ struct BlockedMetric {
     narrow(from.z, direction.z, lower.z, upper.z);
     return first <= last ? first : kInfinity;
   }
-  double limit() const { return is_blocked ? -1 : kInfinity; }
+  double limit() const { return is_blocked ? -1.0 : kInfinity; }
 
   // After T. Moeller and B. Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
   void visit(std::uint32_t i) {
