@@ -178,7 +178,7 @@ Scene scene_of_best(SliceReport& report, const HollowOptions& model, JobLog& log
                                        : fmt::format("{:.1f} -> {} {}", *from / unit_size, value, unit)});
   };
   add("filament", solid.filament_mm, best.figures.filament_mm, "m", 1000);
-  add("print time", solid.seconds, best.figures.seconds, "h", 3600);
+  add("print time", solid.seconds, best.figures.seconds, "min", 60);
   scene.figures.push_back({"sliced as", fmt::format("{} by {}", best.name(), report.slicer.profile->name)});
   return scene;
 }
