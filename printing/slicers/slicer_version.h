@@ -11,6 +11,7 @@ namespace aerate {
 struct SlicerVersion {
   int major = 0, minor = 0, patch = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 takes what it compares with for a null pointer
   auto operator<=>(const SlicerVersion&) const = default;
 };
 
