@@ -455,7 +455,7 @@ void add_drainage_marks(Scene& scene, const DrainageFindings& findings) {
 
 Scene scene_of(const HollowedModel& hollowed, const HollowReport& report) {
   Scene scene;
-  scene.title = title_of(hollowed.model.input);
+  scene.title = title_of(hollowed.model->input);
   scene.mesh = hollowed.carved.solid.mesh;
   scene.parts = hollowed.carved.solid.parts;
   scene.void_use = report.modifiers ? VoidUse::modifiers : VoidUse::removed;
