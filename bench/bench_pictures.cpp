@@ -45,7 +45,8 @@ int run(const Arguments& arguments) {
   for (const std::string& model : arguments.positional) {
     Monitor monitor;
     const HollowOptions options = options_for(model, folder.path() / "result.stl");
-    const HollowedModel hollowed = carve_model(options, monitor);
+    PreparedModels models;
+    const HollowedModel hollowed = carve_model(options, models, monitor);
     const HollowReport report = write_hollowed(hollowed, options, monitor);
     for (const PictureColour colour : {PictureColour::radius, PictureColour::thickness}) {
       const double processor = processor_seconds();
