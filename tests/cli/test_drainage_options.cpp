@@ -325,11 +325,11 @@ TEST(DrainageOptions, WrongInput) {
   refused({"--channel-diameter", "1e-6"}, kUsage, {"single precision"});
   refused({"--escape-hole", "12,20"}, kUsage, {"--escape-hole", "x,y,z"});
   refused({"--hole-diameter", "3"}, kUsage, {"narrower than channels of 3.5 mm", "--hole-diameter"});
-  refused({"--channel-diameter", "25", "--hole-diameter", "25"}, kUsage,
+  refused({"--channel-diameter", "40", "--hole-diameter", "40"}, kUsage,
           {"too wide for every void", "a smaller --channel-diameter and --hole-diameter"});
   refused(
-      {"--hole-diameter", "25"}, kUsage,
-      {"an escape hole of 25 mm is too wide for every void", "a smaller --hole-diameter (3.5 mm or more"});
+      {"--hole-diameter", "40"}, kUsage,
+      {"an escape hole of 40 mm is too wide for every void", "a smaller --hole-diameter (3.5 mm or more"});
   refused({"--channel-diameter", "0"}, kUsage, {"--channel-diameter"});
   refused({"--up", "0,0,0"}, kUsage, {"--up", "no direction"});
   refused({"--no-drain", "--escape-hole", "12,20,0"}, kUsage,
