@@ -70,6 +70,11 @@ Material choose_material(const std::string& name, const MaterialFigures& given) 
   Material material = is_known ? *preset : Material{.name = name};
   material.density_g_cm3 = given.density_g_cm3.value_or(material.density_g_cm3);
   if (given.bulk_density_g_cm3) material.bulk_density_g_cm3 = given.bulk_density_g_cm3;
+  if (given.bulk_density_g_cm3 && *given.bulk_density_g_cm3 >= material.density_g_cm3)
+    throw UsageError(
+        fmt::format("a bulk density of {:g} g/cm3 is not less than the {:g} g/cm3 of what is printed",
+                    *given.bulk_density_g_cm3, material.density_g_cm3),
+        "give --bulk-density of the loose powder");
   if (!given.price) return material;
   material.price_per_kg = *given.price / kilograms_in(material, given.per);
   material.priced_per = given.per;

@@ -43,7 +43,7 @@ std::string material_names();
 
 // A built-in material, by its name in any case, with what is given in place of its own figures. A name that is none of
 // theirs is taken as it is if both density and price are given. Throws UsageError that lists the names there are
-// otherwise, and for a price of loose powder whose bulk density is not known.
+// otherwise, for a price of loose powder whose bulk density is not known, and for one that is no less than the density.
 Material choose_material(const std::string& name, const MaterialFigures& given = {});
 
 }  // namespace aerate

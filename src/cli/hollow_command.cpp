@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -323,11 +324,19 @@ struct HollowCommand {
   // The preferred one first. Unless it was said what voids are, there are others where it can be told which is better.
   std::vector<JobForm> forms() const {
     const HollowOptions options = unshaped();
+    std::vector<JobForm> forms = forms_of(options);
+    // What was asked for says which voids are left out: others are made where that cannot be reached.
+    if (options.target || options.stand)
+      for (JobForm& other : std::span(forms).subspan(1)) other.tried = FormTrial::otherwise;
+    return forms;
+  }
+
+  std::vector<JobForm> forms_of(const HollowOptions& options) const {
     const std::optional<bool> asked = cells.asks_for_cells();
     const bool makes_cells = asked.value_or(is_cells_unasked(options));
     std::vector<JobForm> forms{{shaped(options, makes_cells)}};
-    const bool can_compare =
-        (options.drainage || options.infill_is_known) && !options.target && !options.stand;
+    const bool is_sought = options.target || options.stand;
+    const bool can_compare = options.drainage || (options.infill_is_known && !is_sought);
     if (cells.says_how_cells_are() || !can_compare || !may_be_cells(options.packing)) return forms;
     const ProcessChoice& limits = options.packing.process;
     const bool is_bounded =

@@ -131,6 +131,7 @@ Json material_of(const HollowReport& report) {
           {"density_g_cm3", report.material.density_g_cm3},
           {"price_per_kg", report.material.price_per_kg},
           {"price_per_litre", report.material.price_per_litre()},
+          {"bulk_density_g_cm3", or_null(report.material.bulk_density_g_cm3)},
           {"priced_per", name_of(report.material.priced_per)},
           {"assumes", use.predicted ? "the predicted filament" : "solid material (100 % infill)"},
           {"mass_before_g", use.mass_before_g},

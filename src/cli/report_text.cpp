@@ -110,9 +110,10 @@ void add_packing(Lines& lines, const char* label, const std::string& shapes, con
 }
 
 void add_clearances(Lines& lines, const Clearances& clearances, const PackingLimits& limits) {
-  const std::string gap = clearances.gap ? fmt::format("{:.3f} mm", *clearances.gap) : "none (one void)";
-  lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} at least (limit {:g})", clearances.wall,
-            limits.wall, gap, limits.gap);
+  const std::string gap =
+      clearances.gap ? fmt::format("{:.3f} mm at least", *clearances.gap) : "none, there is one void";
+  lines.add("wall", "{:.3f} mm at least (limit {:g}); gap {} (limit {:g})", clearances.wall, limits.wall, gap,
+            limits.gap);
 }
 
 void add_kept(Lines& lines, const std::optional<KeptFacts>& kept, const PackingLimits& limits) {
@@ -359,9 +360,10 @@ void add_stand(Lines& lines, const HollowReport& report) {
 void add_material(Lines& lines, const HollowReport& report) {
   const MaterialUse use = material_use(report);
   const Material& material = report.material;
-  const std::string figures =
-      fmt::format("{:g} g/cm3 and {:g} a {}", material.density_g_cm3, material.price_per(material.priced_per),
-                  name_of(material.priced_per));
+  std::string figures = fmt::format("{:g} g/cm3 and {:g} a {}", material.density_g_cm3,
+                                    material.price_per(material.priced_per), name_of(material.priced_per));
+  if (material.priced_per == PriceUnit::bulk_litre)
+    figures += fmt::format(" of powder of {:g} g/cm3", *material.bulk_density_g_cm3);
   if (report.modifiers && report.modifiers->hold_lightning) {
     lines.add("material", "lightning infill takes less than its density says; 'aerate slice' tells what");
     return;

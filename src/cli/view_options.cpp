@@ -36,9 +36,13 @@ std::optional<PictureSize> parse_picture_size(const std::string& text) {
 }
 
 ViewOptions::ViewOptions(CLI::App& command, const std::string& what) {
+  const auto is_named = [](const std::string& name) {
+    return name.empty() ? "no name was given" : std::string();
+  };
   command
       .add_option("--picture", picture_,
                   fmt::format("Also draw a picture of {}, cut open, with its figures (.png)", what))
+      ->check(CLI::Validator(is_named, ""))
       ->type_name("FILE");
   of_picture_.push_back(
       command
@@ -72,6 +76,7 @@ ViewOptions::ViewOptions(CLI::App& command, const std::string& what) {
           fmt::format("Also make a page of {}, to turn and cut in a browser, with its figures: one file that "
                       "needs no network (.html)",
                       what))
+      ->check(CLI::Validator(is_named, ""))
       ->type_name("FILE");
 }
 

@@ -150,7 +150,9 @@ struct Search {
   double worth_of_size = 0;
 
   bool is_worth_trying(const JobForm& form) const {
-    if (!best || best->options->infill_is_known || leaves_out_much(*best)) return true;
+    if (!best) return true;
+    if (form.tried == FormTrial::otherwise) return false;
+    if (best->options->infill_is_known || leaves_out_much(*best)) return true;
     return form.tried == FormTrial::always || (form.tried == FormTrial::for_fewer_holes && takes_many_holes);
   }
 

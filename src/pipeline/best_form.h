@@ -23,6 +23,7 @@ enum class FormTrial {
   always,
   for_fewer_holes,  // cells of another size: if the best of those before it are several groups, or more than two holes drain one
   for_more_volume,  // else not
+  otherwise,        // where none before it could be made, whatever else holds
 };
 
 // One way of doing a job.

@@ -168,6 +168,7 @@ Scene scene_of_best(SliceReport& report, const HollowOptions& model, JobLog& log
     const PreparedModel read = load_and_inspect(model.model, model.load, log);
     scene = scene_of(read.mesh, read.input);
   }
+  if (report.print) scene.layer_height = report.print->settings.layer_height;
   const GcodeFigures& solid = report.forms.front().figures;
   const auto add = [&](const char* name, const std::optional<double>& from, const std::optional<double>& to,
                        const char* unit, double unit_size) {

@@ -70,8 +70,9 @@ NothingToRemoveError out_of_reach(const SavingTarget& target, const Material& ma
                         std::floor(1e4 * removed / before) / 100)
           : fmt::format("--target-mass {:g} g: with {} the model has {:.6g} g at least", target.value, voids,
                         std::ceil((before - removed) * material.density_g_cm3) / 1000);
-  return NothingToRemoveError(file + ": " + what,
-                              "give that, a smaller --wall, --gap or --min-radius, or --shape cells");
+  return NothingToRemoveError(
+      file + ": " + what,
+      "give that, a smaller --wall, --gap or --min-radius, or larger cells (--shape cells --max-voids 1)");
 }
 
 }  // namespace

@@ -347,7 +347,8 @@ class View {
     constexpr Vec3d kTowardsLight{-0.42, 0.62, -0.66};
     constexpr double kAmbient = 0.52;
     const double direct = std::max(dot(normal, kTowardsLight), 0.0);
-    const double depth = scene_.parts[part].kind == PartKind::outer ? 0.12 : 0.3;
+    const PartKind kind = scene_.parts[part].kind;
+    const double depth = kind == PartKind::outer || kind == PartKind::remnant ? 0.12 : 0.3;
     seen.light = (kAmbient + (1.08 - kAmbient) * direct) * (1 - depth * surface_.depth_share(*hit));
     if (walls_ && seen.of_void != kNone) {
       walls_->find(surface_.place_of(p, *hit), known);

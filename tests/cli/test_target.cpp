@@ -119,6 +119,20 @@ TEST(Target, DrainedVoidsReachItAsTheyDrain) {
   }
 }
 
+// What no cells of the usual size reach, larger ones may.
+TEST(Target, IsReachedByLargerCellsWhereTheUsualOnesDoNot) {
+  const Job job;
+  const auto model = job.input("block.stl", make_box({0, 0, 0}, {60, 40, 20}));
+  const std::vector<std::string> sla{"--process", "sla"};
+  const ProcessResult refused =
+      run(job.hollow(model, with(sla, {"--cell-size", "33", "--target-saving", "66"})));
+  EXPECT_EQ(refused.exit_code, 5) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "--max-voids 1")) << refused.err;
+  const Json reached = json_of(job.hollow(model, with(sla, {"--target-saving", "66"})));
+  EXPECT_GE(reached["volume"]["removed_percent"].get<double>(), 66);
+  EXPECT_NE(reached["notices"].dump().find("since with --shape cells --cell-size 33"), std::string::npos);
+}
+
 TEST(Target, WhatCannotBeReachedIsRefusedWithTheMost) {
   const Job job;
   const auto model = job.input("block.stl", block());

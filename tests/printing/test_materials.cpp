@@ -65,6 +65,8 @@ TEST(Materials, APriceMayBeThatOfPowderByBulk) {
   EXPECT_GT(powder.price_per_litre(), 40);
   const MaterialFigures loose{.bulk_density_g_cm3 = 0.5, .price = 20, .per = PriceUnit::bulk_litre};
   EXPECT_DOUBLE_EQ(choose_material("PA12", loose).price_per_kg, 40);
+  // Loose powder is no denser than what is printed of it.
+  EXPECT_THROW(choose_material("PA12", {.bulk_density_g_cm3 = 1.01}), UsageError);
   EXPECT_TRUE(contains(message_of<UsageError>(
                            [] { choose_material("AlSi10Mg", {.price = 20, .per = PriceUnit::bulk_litre}); }),
                        "bulk density of AlSi10Mg"));

@@ -93,6 +93,8 @@ const isOutside = (kind: Kind): boolean => kind === 'outer' || kind === 'remnant
 export class Stage {
   readonly camera = new PerspectiveCamera(30, 1, 1, 1000);
   readonly controls: OrbitControls;
+  // Where the model is seen whole from; null as soon as who looks has moved.
+  private fitted: Vec3 | null = null;
   private readonly renderer: WebGLRenderer;
   private readonly graph = new Graph();
   private readonly counted = new Graph();
@@ -134,6 +136,9 @@ export class Stage {
     this.controls.minDistance = this.radius * 0.05;
     this.controls.maxDistance = this.radius * 20;
     this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('start', () => {
+      this.fitted = null;
+    });
     this.tint = new BufferAttribute(tints, 4, true);
     this.cap = {
       planes: this.planes,
@@ -303,6 +308,7 @@ export class Stage {
 
   // From where `way` points to what is left of the model, as near as all of that is seen.
   lookFrom(way: Vec3): void {
+    this.fitted = way;
     const left = this.verticesLeft();
     const { target } = this.controls;
     target.copy(new Box3().setFromPoints([...left]).getCenter(new Vector3()));
@@ -350,6 +356,7 @@ export class Stage {
   }
 
   lookAt(place: Vec3): void {
+    this.fitted = null;
     const target = new Vector3(...this.fromCentre(place));
     this.camera.position.add(target).sub(this.controls.target);
     this.controls.target.copy(target);
@@ -359,6 +366,7 @@ export class Stage {
 
   // Radians about the axis that is up, and up or down.
   turn(aside: number, up: number): void {
+    this.fitted = null;
     const off = this.camera.position.clone().sub(this.controls.target);
     const axis = this.camera.up;
     const side = new Vector3().crossVectors(axis, off).normalize();
@@ -371,6 +379,7 @@ export class Stage {
   }
 
   zoom(factor: number): void {
+    this.fitted = null;
     const off = this.camera.position.clone().sub(this.controls.target);
     const length = Math.min(Math.max(off.length() / factor, this.controls.minDistance), this.controls.maxDistance);
     this.camera.position.copy(this.controls.target).add(off.setLength(length));
@@ -389,6 +398,7 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.counts.setSize(this.canvas.width, this.canvas.height);
     this.camera.aspect = width / height;
+    if (this.fitted) this.lookFrom(this.fitted);
     this.draw();
   }
 
