@@ -435,6 +435,14 @@ TEST_F(Hook, KeepsALog) {
   EXPECT_TRUE(contains(text, "binary G-code"));
 }
 
+TEST_F(Hook, RefusesAModelThatCannotBeHollowed) {
+  Mesh open = make_box({0, 0, 0}, {20, 20, 20});
+  open.triangles.pop_back();
+  model_ = folder_.write("block.stl", to_binary_stl(open));
+  const std::string message = expect_refused(with_model(), 4);
+  EXPECT_TRUE(contains(message, "open") || contains(message, "hole")) << message;
+}
+
 TEST_F(Hook, RefusesBinaryGcode) {
   write_gcode(std::string("GCDE\1\0\0\0\0\0", 10));
   EXPECT_TRUE(contains(expect_refused(with_model(), 3), "switch off \"Supports binary G-code\""));
