@@ -364,13 +364,16 @@ struct HollowCommand {
   static void add_other_sizes(std::vector<JobForm>& forms) {
     const HollowOptions usual = forms.back().options;
     if (!usual.cells || !usual.drainage) return;
-    HollowOptions& larger = forms.emplace_back(usual, FormTrial::for_fewer_holes).options;
+    HollowOptions larger = usual;
     larger.packing.process = with_larger_cells(std::move(larger.packing.process));
-    HollowOptions& single = forms.emplace_back(usual, FormTrial::for_fewer_holes).options;
+    forms.push_back({std::move(larger), FormTrial::for_fewer_holes});
+    HollowOptions single = usual;
     single.packing.stop.max_count = 1;
+    forms.push_back({std::move(single), FormTrial::for_fewer_holes});
     if (auto process = with_smaller_cells(usual.packing.process)) {
-      HollowOptions& smaller = forms.emplace_back(usual, FormTrial::for_more_volume).options;
+      HollowOptions smaller = usual;
       smaller.packing.process = *std::move(process);
+      forms.push_back({std::move(smaller), FormTrial::for_more_volume});
     }
   }
 

@@ -56,7 +56,8 @@ struct BlockedMetric {
     narrow(from.x, direction.x, lower.x, upper.x);
     narrow(from.y, direction.y, lower.y, upper.y);
     narrow(from.z, direction.z, lower.z, upper.z);
-    return first <= last ? first : kInfinity;
+    if (first > last) return kInfinity;
+    return first;
   }
   double limit() const { return is_blocked ? -1.0 : kInfinity; }
 
