@@ -26,7 +26,7 @@ END
 chmod +x "$folder/prusa-slicer"
 
 export PATH=$folder:$PATH GTEST_FILTER=${AERATE_PRUSA_TESTS:-*}
-"$folder/prusa-slicer" --help | head -1
+"$folder/prusa-slicer" --help | sed -n 1p
 failed=0
 for test in "$@"; do "$test" || failed=1; done
 exit "$failed"
