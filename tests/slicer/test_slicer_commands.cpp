@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -394,7 +395,10 @@ TEST_F(Slicing, TheHookRefusesModelsThatDoNotStandAsInTheFile) {
       {"--rotate", "30", part},    {"--scale", "1.02", part},  {mirror},
       {"--center", "70,70", part}, {"--rotate-x", "90", part}, {"--duplicate", "2", part},
       {"--merge", part, other}};
+  // From 2.8 on a model that was moved on the plate is followed (with_newer_slicer.sh).
+  const bool follows = std::getenv("AERATE_PRUSA_SLICER") != nullptr;
   for (const auto& arguments : cases) {
+    if (follows && arguments.front() == "--center") continue;
     std::vector<std::string> command{"prusa-slicer", "--export-gcode", "--layer-height",
                                      "0.3",          "--output",       output()};
     command.insert(command.end(), arguments.begin(), arguments.end());
@@ -459,8 +463,9 @@ TEST_F(Slicing, AProjectOfPrusaSlicerItself) {
   AERATE_NEEDS("prusa-slicer");
   // Turned and larger than in its file; the package names a thumbnail that it does not have.
   const fs::path project = folder_.path() / "project.3MF";
-  const ProcessResult exported = run({"prusa-slicer", "--export-3mf", "--rotate", "30", "--scale", "1.1",
-                                      "--output", folder_.path() / "made.3mf", block()});
+  const ProcessResult exported =
+      run({"prusa-slicer", "--export-3mf", "--rotate", "30", "--scale", "1.1", "--center", "100,100",
+           "--output", folder_.path() / "made.3mf", block()});
   ASSERT_EQ(exported.exit_code, 0) << exported.err;
   fs::rename(folder_.path() / "made.3mf", project);
   slice_with_prusa(

@@ -19,7 +19,7 @@ cat > "$folder/prusa-slicer" <<END
 #!/bin/sh
 case "\$*" in
   *--dont-arrange*) ;;
-  *.3mf) set -- --center 100,100 "\$@" ;;
+  *.3mf | *.3MF) set -- --center 100,100 "\$@" ;;
 esac
 echo y | exec '$program' "\$@"
 END
