@@ -1,7 +1,6 @@
 #include "files/output_file.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <exception>
@@ -153,10 +152,6 @@ void commit_all(std::span<PendingFile* const> files) {
     for (PendingFile* const file : files.first(committed)) fs::remove(file->target(), ignored);
     throw;
   }
-}
-
-void commit_both(PendingFile& first, PendingFile& second) {
-  commit_all(std::array{&first, &second});
 }
 
 OutputFile::OutputFile(Destination destination)

@@ -39,7 +39,6 @@ class PendingFile {
 // Makes all files their targets, or none: all that can fail but renaming is done before the first takes its place.
 // Should renaming a later one fail, those before it are removed again; a file that one of them replaced is then gone.
 void commit_all(std::span<PendingFile* const> files);
-void commit_both(PendingFile& first, PendingFile& second);
 
 // Where bytes go, and the name that errors use: of a pending file, its target.
 struct Destination {

@@ -9,7 +9,8 @@ namespace aerate {
 
 std::shared_ptr<const PreparedModel> PreparedModels::get(const HollowOptions& options, Monitor& monitor) {
   const PackingLimits limits = options.packing.limits();
-  const Asked asked{limits.wall, limits.gap, options.tolerance, options.voxel_size};
+  const Asked asked{limits.wall, limits.gap, options.opens_cavities ? options.tolerance : 0,
+                    options.voxel_size};
   auto found = std::ranges::find(made_, asked, &Made::asked);
   if (found == made_.end()) {
     HeldNotices held(monitor);

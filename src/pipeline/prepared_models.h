@@ -21,7 +21,7 @@ class PreparedModels {
  private:
   struct Asked {
     double wall, gap;  // which voxels and holes depend on
-    double tolerance;  // of holes
+    double tolerance;  // of holes that open cavities; 0 where none are
     std::optional<double> voxel_size;
 
     friend bool operator==(const Asked&, const Asked&) = default;

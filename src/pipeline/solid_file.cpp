@@ -122,10 +122,4 @@ void write_beside(const Solid& solid, AnnouncedFile& pending, const SolidFormat&
   monitor.check_interrupted();
 }
 
-void write_checked(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
-                   const std::function<void(const Mesh& written)>& check, Monitor& monitor) {
-  write_beside(solid, pending, format, check, monitor);
-  pending.file().commit();
-}
-
 }  // namespace aerate

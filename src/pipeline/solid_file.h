@@ -48,12 +48,9 @@ void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat&
 Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
                      Monitor& monitor);
 
-// Writes a solid beside its target, reads it back and lets `check` look at it. Nothing becomes the target yet.
+// Writes a solid beside its target, reads it back and lets `check` look at it. Nothing becomes the target yet: what `check`
+// throws leaves that as it was.
 void write_beside(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
                   const std::function<void(const Mesh& written)>& check, Monitor& monitor);
-
-// The same, and makes it the target if `check` takes what was read. What `check` throws leaves the target as it was.
-void write_checked(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
-                   const std::function<void(const Mesh& written)>& check, Monitor& monitor);
 
 }  // namespace aerate

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -262,7 +263,7 @@ TEST_F(WriteTest, TwoFilesAreCommittedTogetherOrNotAtAll) {
     PendingFile a(first), b(second);
     write_bytes("new a", a);
     fs::remove(b.path());  // lost before it is on disk
-    EXPECT_THROW(commit_both(a, b), FailureError);
+    EXPECT_THROW(commit_all(std::array{&a, &b}), FailureError);
   }
   EXPECT_EQ(contents_of(first), "old");
   EXPECT_EQ(files_in_folder(), 1);
@@ -270,14 +271,14 @@ TEST_F(WriteTest, TwoFilesAreCommittedTogetherOrNotAtAll) {
     PendingFile a(first), b(second);
     write_bytes("new a", a);
     fs::create_directory(second);  // comes into the way: only renaming fails
-    EXPECT_THROW(commit_both(a, b), FailureError);
+    EXPECT_THROW(commit_all(std::array{&a, &b}), FailureError);
   }
   EXPECT_FALSE(fs::exists(first));
   fs::remove(second);
   PendingFile a(first), b(second);
   write_bytes("new a", a);
   write_bytes("new b", b);
-  commit_both(a, b);
+  commit_all(std::array{&a, &b});
   EXPECT_EQ(contents_of(first), "new a");
   EXPECT_EQ(contents_of(second), "new b");
   EXPECT_EQ(files_in_folder(), 2);
