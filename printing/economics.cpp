@@ -75,10 +75,10 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
     if (rules.bottom_layers > 0) end = std::max(end, skin(k, -1));
     if (end <= 0) continue;
     const double wall = own > 0 ? own + rules.wall : 0, sparse = end + half_line;
-    use.wall_mm3 += h * rules.wall_density * kPi * (wall * wall - own * own);
+    use.wall_mm3 += h * kPi * (wall * wall - own * own - 2 * own * rules.round_edge);
     use.solid_mm3 += h * kPi * (end * end - start * start);
     use.sparse_mm3 -= h * kPi * sparse * sparse;
-    use.rim_mm3 += h * kPi * (sparse * sparse - end * end);
+    use.full_mm3 -= h * kPi * end * end;
     use.joined_mm3 += h * kJoinedShare * rules.spacing * 2 * kPi * sparse;
   }
   return use;

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "printing/full_infill.h"
 #include "printing/layer_slices.h"
 #include "printing/shell_rules.h"
 
@@ -23,8 +24,6 @@ constexpr int kSteps = 250;
 // An edge passes a pixel's centre on its inner side at no more than this many pixels, and on average at half
 // of that.
 constexpr double kNearest = 0.7;
-// From one pixel to the next along a way towards the middle, depths rise by at least this share of the way.
-constexpr double kRise = 0.6;
 
 // Distances from the border of a modifier are told apart in so many steps a millimetre, up to 1.27 mm.
 constexpr double kBorderSteps = 100;
@@ -39,6 +38,8 @@ using Pixels = std::vector<std::uint8_t>;
 // rules' lengths in these steps.
 struct Layers {
   std::vector<Pixels> depths;
+  std::vector<double> contour_lengths;  // mm
+  std::vector<double> rims;  // pixels that are to be added, since pixels on the contour are in or out
   // By how far a pixel is inside a modifier; empty where there are none.
   std::vector<std::vector<std::int8_t>> modifiers;
   bool prints_in_modifiers = false;
@@ -90,29 +91,106 @@ bool any_around(std::size_t row, std::size_t column, std::size_t away, const Lay
   return false;
 }
 
-// Where infill would be too narrow, depths are those of walls: what no pixel of its middle is near to is
-// narrower than twice the middle's depth.
-Pixels with_widened_walls(const Pixels& depths, const Layers& layers) {
-  Pixels result = depths;
+// How depths change round a pixel, from those of its neighbours nearer to the contour: in the middle between two contours they
+// rise on either side.
+struct DepthSlope {
+  double x = 0, y = 0;  // a unit vector that points away from the contour, or 0
+};
+
+DepthSlope slope_at(const Pixels& depths, std::size_t i, const LayerRaster& raster) {
+  const auto along = [&](std::size_t step) -> double {
+    const int before = depths[i - step], here = depths[i], after = depths[i + step];
+    const bool rises = before < after;
+    const int lower = std::min(before, after);
+    // Outside there are no depths: then that of the other side.
+    const int rise = lower > 0 ? here - lower : std::max(before, after) - here;
+    return rises ? rise : -rise;
+  };
+  const double x = along(1), y = along(raster.count_x), length = std::hypot(x, y);
+  return length > 0 ? DepthSlope{x / length, y / length} : DepthSlope{};
+}
+
+// Depths between the centres of pixels: each of the four around says how far it is to the contour that it is nearest to.
+struct SampledDepth {
+  double depth = 0;  // steps
+  DepthSlope slope;  // of the one that is nearest
+};
+
+// `x`, `y`: in pixels, from the centre of the first.
+SampledDepth depth_at(const Pixels& depths, double x, double y, const Layers& layers) {
   const LayerRaster& raster = layers.raster;
-  const int middle = layers.wall + layers.widened_walls / 2;
-  const auto away = static_cast<std::size_t>(std::max(
-      1.0, std::ceil((layers.rules.wall - layers.rules.fill + layers.rules.widened_walls) / raster.pixel)));
-  const double steps_per_pixel = kRise * raster.pixel / layers.step;
-  for (std::size_t row = 0; row < raster.count_y; ++row) {
-    for (std::size_t column = 0; column < raster.count_x; ++column) {
-      const std::size_t at = row * raster.count_x + column;
-      const int depth = depths[at];
-      if (depth < layers.fill || depth >= middle) continue;
-      const auto leads_to_the_middle = [&](std::size_t other, double distance) {
-        const int risen = depth + static_cast<int>(steps_per_pixel * distance);
-        return depths[other] >= middle && depths[other] >= std::min(1 + kSteps, risen);
-      };
-      if (!any_around(row, column, away, raster, leads_to_the_middle))
-        result[at] = static_cast<std::uint8_t>(layers.fill - 1);
+  const double steps_per_pixel = raster.pixel / layers.step;
+  SampledDepth result{1.0 + kSteps, {}};
+  const double column = std::floor(x), row = std::floor(y);
+  for (const double r : {row, row + 1}) {
+    for (const double c : {column, column + 1}) {
+      if (c < 1 || r < 1 || c + 2 > static_cast<double>(raster.count_x) ||
+          r + 2 > static_cast<double>(raster.count_y))
+        return {};
+      const std::size_t i = static_cast<std::size_t>(r) * raster.count_x + static_cast<std::size_t>(c);
+      if (depths[i] == 0) return {};
+      if (depths[i] > kSteps) continue;  // further than is known
+      const DepthSlope slope = slope_at(depths, i, raster);
+      const double depth = depths[i] + steps_per_pixel * (slope.x * (x - c) + slope.y * (y - r));
+      if (depth < result.depth) result = {depth, slope};
     }
   }
   return result;
+}
+
+// Where infill would be too narrow, depths are those of walls: where straight inwards, and inwards of what is nearer there
+// (in a corner), the middle of the least infill is not as far from all contours as it has to be.
+Pixels with_widened_walls(const Pixels& depths, const Layers& layers) {
+  constexpr double kNear = 4;  // steps that a depth may lack
+  Pixels result = depths;
+  const LayerRaster& raster = layers.raster;
+  const double middle = layers.wall + layers.widened_walls / 2.0,
+               steps_per_pixel = raster.pixel / layers.step;
+  const auto leads_to_the_middle = [&](std::size_t row, std::size_t column) {
+    double x = static_cast<double>(column), y = static_cast<double>(row);
+    SampledDepth here{static_cast<double>(depths[row * raster.count_x + column]),
+                      slope_at(depths, row * raster.count_x + column, raster)};
+    for (int turn = 0; turn < 2; ++turn) {
+      const double way = (middle - here.depth) / steps_per_pixel;
+      x += way * here.slope.x;
+      y += way * here.slope.y;
+      here = depth_at(depths, x, y, layers);
+      if (here.depth >= middle - kNear) return true;
+      if (here.depth <= 0) return false;
+    }
+    return false;
+  };
+  for (std::size_t row = 1; row + 1 < raster.count_y; ++row) {
+    for (std::size_t column = 1; column + 1 < raster.count_x; ++column) {
+      const std::size_t at = row * raster.count_x + column;
+      if (depths[at] < layers.fill || depths[at] >= middle) continue;
+      if (!leads_to_the_middle(row, column)) result[at] = static_cast<std::uint8_t>(layers.fill - 1);
+    }
+  }
+  return result;
+}
+
+// What of a pixel is beyond a line, less 1 if its centre is. `beyond` pixels: how far that is.
+double rest_of_pixel(double beyond) {
+  if (std::abs(beyond) >= 0.5) return 0;
+  return beyond + (beyond >= 0 ? -0.5 : 0.5);
+}
+
+// The area within the contour less the pixels whose centre is, in pixels. Where parts overlap there is no border.
+double rim_of(const LayerSlice& slice, const LayerRaster& raster) {
+  double rim = 0;
+  const auto half = static_cast<float>(raster.pixel / 2);
+  const std::size_t columns = raster.count_x;
+  for (std::size_t i = columns; i + columns < slice.inside.size(); ++i) {
+    if (slice.depth[i] >= half) continue;
+    const std::uint8_t here = slice.inside[i];
+    const bool is_border = slice.inside[i - 1] != here || slice.inside[i + 1] != here ||
+                           slice.inside[i - columns] != here || slice.inside[i + columns] != here;
+    if (!is_border) continue;
+    const double within = static_cast<double>(slice.depth[i]) / raster.pixel;
+    rim += here != 0 ? within - 0.5 : 0.5 - within;
+  }
+  return rim;
 }
 
 Layers layers_of(const Mesh& mesh, const LayerRaster& raster, const PrintSettings& settings) {
@@ -134,15 +212,19 @@ Layers layers_of(const Mesh& mesh, const LayerRaster& raster, const PrintSetting
   layers.skin_shadow = layers.steps(rules.skin_shadow);
   layers.near = 1 + std::min(layers.steps(kNearest * raster.pixel), kSteps - layers.fill);
   layers.depths.resize(raster.layer_count);
+  layers.contour_lengths.resize(raster.layer_count);
+  layers.rims.resize(raster.layer_count);
   const LayerSlicer slicer(mesh, raster);
   tbb::parallel_for(std::size_t{0}, raster.layer_count, [&](std::size_t k) {
     LayerSlice slice = slicer.slice(k, reach);
+    layers.rims[k] = rim_of(slice, raster);
     for (std::size_t i = 0; i < slice.inside.size(); ++i) {
       const double steps = static_cast<double>(slice.depth[i]) / layers.step;
       if (slice.inside[i] != 0)
         slice.inside[i] = static_cast<std::uint8_t>(1 + std::min<double>(kSteps, steps));
     }
     layers.depths[k] = with_widened_walls(slice.inside, layers);
+    layers.contour_lengths[k] = slice.contour_length;
   });
   return layers;
 }
@@ -430,23 +512,71 @@ Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
   return result;
 }
 
+// What lines of full infill print of a layer's sparse infill; outside and inside of modifiers.
+std::array<double, 2> full_shares(const Layers& layers, std::size_t k, const Parts& layer) {
+  const Pixels& depths = layers.depths[k];
+  // Towards a wall as far as infill goes; else, where a solid layer begins, half a pixel.
+  const auto reach = [&](std::size_t i, double x, double y) {
+    const LayerRaster& raster = layers.raster;
+    const DepthSlope slope = slope_at(depths, i, raster);
+    const double outward = -(slope.x * x + slope.y * y), beyond = (depths[i] - layers.fill) * layers.step;
+    constexpr double kTowardsIt = 0.3;
+    return outward > kTowardsIt ? std::min(beyond / outward, 2 * raster.pixel) : raster.pixel / 2;
+  };
+  const double angle = kTurn + (k % 2 == 0 ? kPi / 4 : 3 * kPi / 4);
+  std::array<double, 2> shares{1, 1};
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (side == 1 && layers.modifiers.empty()) break;
+    Pixels region(depths.size(), 0);
+    for (std::size_t i = 0; i < region.size(); ++i) {
+      const bool is_sparse = layer.parts[i] == Part::sparse || layer.parts[i] == Part::rim;
+      region[i] = is_sparse && layers.is_modified(k, i) == (side == 1) ? 1 : 0;
+    }
+    shares[side] = full_infill_share(region, layers.raster, angle, layers.rules.spacing, reach);
+  }
+  return shares;
+}
+
+// Whether there is no infill inwards of a wall's pixel: walls of both sides meet.
+bool is_of_web(const Layers& layers, std::size_t k, std::size_t i) {
+  const Pixels& depths = layers.depths[k];
+  const LayerRaster& raster = layers.raster;
+  if (depths[i] == layers.fill - 1) return true;  // a widened wall
+  const DepthSlope slope = slope_at(depths, i, raster);
+  const double way = (layers.fill - depths[i]) * layers.step / raster.pixel + kNearest;
+  const auto columns = static_cast<std::ptrdiff_t>(raster.count_x);
+  const std::ptrdiff_t at =
+      static_cast<std::ptrdiff_t>(i) + std::lround(way * slope.x) + std::lround(way * slope.y) * columns;
+  return at < 0 || at >= std::ssize(depths) || !layers.is_fill(depths[static_cast<std::size_t>(at)]);
+}
+
 FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
   const LayerRaster& raster = layers.raster;
   const ShellRules& rules = layers.rules;
   // Areas in pixels, lengths in sides of pixels; of infill outside and inside of modifiers.
   struct Infill {
-    std::size_t fill = 0, solid = 0, sparse = 0, skin_edge = 0, shade_edge = 0;
+    std::size_t solid = 0, sparse = 0, skin_edge = 0, shade_edge = 0;
+    double fill = 0;
   };
-  std::size_t wall = 0;
+  double wall = layers.rims[k];
+  std::size_t web = 0;
   std::array<Infill, 2> infill;
   // The first and the last pixels of rows and columns are outside.
   const std::size_t columns = raster.count_x;
   for (std::size_t i = columns; i + columns < layer.parts.size(); ++i) {
     const Part part = layer.parts[i];
     if (part == Part::outside) continue;
-    if (layers.is_wall(layers.depths[k][i])) ++wall;
-    if (part == Part::wall) continue;
+    const std::uint8_t depth = layers.depths[k][i];
+    const bool is_web = layers.is_wall(depth) && is_of_web(layers, k, i);
+    const auto beyond = [&](int line) { return (depth + 0.5 - line) * layers.step / raster.pixel; };
     Infill& here = infill[layers.is_modified(k, i) ? 1 : 0];
+    if (layers.is_wall(depth)) ++wall;
+    if (is_web) ++web;
+    if (!is_web) {
+      wall -= rest_of_pixel(beyond(layers.wall));
+      here.fill += rest_of_pixel(beyond(layers.fill));
+    }
+    if (part == Part::wall) continue;
     ++here.fill;
     if (part == Part::sparse) ++here.sparse;
     if (part == Part::shell) ++here.solid;
@@ -463,8 +593,11 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
   // A curve of length L crosses L * 4 / pi / pixel sides of pixels, averaged over its directions (Cauchy,
   // Crofton).
   const double strip = kPi / 4 * raster.pixel * raster.layer_height;
+  const std::array<double, 2> full = full_shares(layers, k, layer);
   FilamentUse use;
-  use.wall_mm3 = volume * rules.wall_density * static_cast<double>(wall);
+  const double printed = wall + rules.web_excess * static_cast<double>(web);
+  use.wall_mm3 =
+      std::max(0.0, volume * printed - rules.round_edge * layers.contour_lengths[k] * raster.layer_height);
   for (std::size_t side = 0; side < 2; ++side) {
     const Infill& of = infill[side];
     const double skin_strip = strip * static_cast<double>(of.skin_edge);
@@ -478,14 +611,14 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
                           rules.spacing / 2 * (skin_strip + shade_strip) - rules.widening * shade_strip);
     sparse.joined_mm3 = kJoinedShare * rules.spacing * edge;
     sparse.border_mm3 = rules.spacing * raster.pixel * raster.layer_height * layer.border[side];
-    sparse.rim_mm3 = volume * static_cast<double>(of.fill) - solid - sparse.sparse_mm3;
+    sparse.full_mm3 = full[side] * std::max(0.0, volume * of.fill - solid);
   }
   return use;
 }
 
 SparseUse sum(const SparseUse& a, const SparseUse& b, double sign) {
   return {a.joined_mm3 + sign * b.joined_mm3, a.sparse_mm3 + sign * b.sparse_mm3,
-          a.rim_mm3 + sign * b.rim_mm3, a.border_mm3 + sign * b.border_mm3};
+          a.full_mm3 + sign * b.full_mm3, a.border_mm3 + sign * b.border_mm3};
 }
 
 FilamentUse sum(const FilamentUse& a, const FilamentUse& b, double sign) {
@@ -497,7 +630,7 @@ FilamentUse sum(const FilamentUse& a, const FilamentUse& b, double sign) {
 }  // namespace
 
 double SparseUse::volume_mm3(double infill, const PrintSettings& settings) const {
-  if (infill >= 1) return sparse_mm3 + rim_mm3;
+  if (infill >= 1) return full_mm3;
   return (infill > 0 ? joined_mm3 : 0) + border_share(infill, settings) * border_mm3 +
          printed_share(infill, settings.pattern) * sparse_mm3;
 }

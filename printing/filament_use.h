@@ -10,7 +10,7 @@ namespace aerate {
 struct SparseUse {
   double joined_mm3 = 0;  // what joins lines of sparse infill where they end
   double sparse_mm3 = 0;  // the space that lines of sparse infill run through
-  double rim_mm3 = 0;     // the space between those and walls or solid layers, which a solid print fills
+  double full_mm3 = 0;    // the same at full infill, whose lines run up to walls and solid layers
   double border_mm3 =
       0;  // lines all along the border of modifiers, of which a share joins lines that end there
 

@@ -29,6 +29,7 @@ struct LayerSlice {
   std::vector<std::uint8_t> inside;  // pixels whose centre is in the solid (winding number at least 1)
   std::vector<float>
       depth;  // distance of a pixel's centre from the contour, on both sides, up to `reach`; else infinite
+  double contour_length = 0;  // mm
 };
 
 // Cuts a closed mesh (outer surface and inward voids alike) into layers, along z.

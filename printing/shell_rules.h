@@ -10,9 +10,10 @@ namespace aerate {
 struct ShellRules {
   double spacing = 0;        // between lines that lie side by side
   double wall = 0;           // from the contour to the inner edge of the walls
-  double wall_density = 1;   // material in walls, over the volume from the contour to there
+  double round_edge = 0;     // of that stays empty along the contour, since the outer line's side is round
   double fill = 0;           // from the contour to where infill begins: it overlaps the walls
   double widened_walls = 0;  // infill narrower than this is left to the walls, which are printed wider
+  double web_excess = 0;  // what walls that meet take more, as a share: lines between them do not fit exactly
   // Layers that look up or down lean if their contour moves by this much from one layer to the next.
   double lean = 0;
   double skin_margin = 0;  // what looks up or down is printed so much wider than it is, into the infill

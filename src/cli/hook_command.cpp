@@ -118,7 +118,11 @@ struct HookCommand {
     if (gcode.empty()) throw UsageError("FILE is required", "see 'aerate hook --help'");
     HookOptions options;
     options.gcode = gcode;
-    options.request = form.request(model);
+    try {
+      options.request = form.request(model);
+    } catch (const Error& error) {
+      options.refused = error;
+    }
     options.model_folder = model_folder;
     options.is_strict = is_strict;
     options.names_saving = names_saving;

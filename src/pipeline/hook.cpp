@@ -300,6 +300,7 @@ HookReport run_hook(const HookOptions& options, Monitor& monitor) {
   AnnouncedFile pending(options.gcode, log);
   const PrivateFolder scratch(log);
   try {
+    if (options.refused) throw Error(*options.refused);
     const HookOptions complete = with_model_found(options, original, *report.origin.slicer, log);
     if (complete.request.hollow.model.empty()) {
       report.remark = "no model was given";

@@ -4,14 +4,16 @@
 #include <optional>
 #include <string>
 
+#include "core/error.h"
 #include "core/monitor.h"
 #include "pipeline/print_forms.h"
 
 namespace aerate {
 
 struct HookOptions {
-  std::filesystem::path gcode;  // as the slicer wrote it; replaced
-  FormRequest request;          // without a model the G-code is annotated only
+  std::filesystem::path gcode;   // as the slicer wrote it; replaced
+  FormRequest request;           // without a model the G-code is annotated only
+  std::optional<Error> refused;  // why there is no request: options that contradict each other
   // Where the model is looked for, by the name of the print, if it is not given (model_of_print.h).
   std::filesystem::path model_folder;
   // What cannot be done is thrown, instead of being told by a comment.

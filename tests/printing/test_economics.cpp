@@ -91,13 +91,15 @@ TEST(Economics, AtTheBreakEvenInfillNothingIsSavedOrLost) {
 }
 
 TEST(Economics, SmallVoidsMakeAPrintLonger) {
-  const FilamentUse whole{SparseUse{.joined_mm3 = 400, .sparse_mm3 = 40000}, 4000, 2000, {}};
-  const FilamentUse hollow{SparseUse{.joined_mm3 = 1000, .sparse_mm3 = 8000}, 12000, 9000, {}};
+  const FilamentUse whole{
+      SparseUse{.joined_mm3 = 400, .sparse_mm3 = 40000, .full_mm3 = 41000}, 4000, 2000, {}};
+  const FilamentUse hollow{
+      SparseUse{.joined_mm3 = 1000, .sparse_mm3 = 8000, .full_mm3 = 10000}, 12000, 9000, {}};
   const std::vector<Sphere> voids(100, Sphere{{0, 0, 0}, 3, SphereKind::adaptive});
   EXPECT_EQ(time_change(whole, hollow, voids, PrintSettings{.infill = 0.15}), TimeChange::longer);
   EXPECT_EQ(time_change(whole, whole, {}, PrintSettings{.infill = 0.15}), TimeChange::same);
   FilamentUse less = whole;
-  less.sparse_mm3 = 20000;
+  less.full_mm3 = 20000;
   EXPECT_EQ(time_change(whole, less, {}, PrintSettings{.infill = 1}), TimeChange::shorter);
 }
 

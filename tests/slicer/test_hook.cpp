@@ -364,10 +364,24 @@ TEST_F(Hook, RefusesAFormThatTheSlicerPutElsewhere) {
 TEST_F(Hook, RefusesAProcessThatPrintsNoFilament) {
   std::vector<std::string> options = with_model();
   options.insert(options.end(), {"--process", "sla"});
+  options.emplace_back("--strict");
   const ProcessResult result = hook(options);
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_TRUE(contains(result.err, "process sla prints no filament"));
   EXPECT_EQ(read_bytes(gcode()), before_);
+  expect_nothing_left();
+}
+
+TEST_F(Hook, OptionsThatContradictEachOtherCostNoPrint) {
+  std::vector<std::string> options = with_model();
+  options.insert(options.end(), {"--process", "sla"});
+  const ProcessResult result = hook(options);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "the print stays as it is"));
+  const std::string after = read_bytes(gcode());
+  EXPECT_TRUE(contains(after, "; aerate_result = unchanged\n; aerate_remark = "));
+  EXPECT_TRUE(contains(after, "process sla prints no filament"));
+  EXPECT_TRUE(contains(after, before_.substr(0, before_.find('\n'))));
   expect_nothing_left();
 }
 
@@ -495,8 +509,9 @@ TEST_F(Hook, RefusesGcodeWithoutSettings) {
 }
 
 TEST_F(Hook, RefusesOptionsInOneLine) {
-  for (const std::vector<std::string>& options :
-       {std::vector<std::string>{"--wal", "1"}, {"--wall", "-1"}, {"--min-radius", "9", "--max-radius", "8"}})
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--wal", "1"},
+                                                  {"--wall", "-1"},
+                                                  {"--strict", "--min-radius", "9", "--max-radius", "8"}})
     EXPECT_TRUE(contains(expect_error(hook(options), 2), "; ")) << options.front();
 }
 
