@@ -79,7 +79,7 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
     use.solid_mm3 += h * kPi * (end * end - start * start);
     use.sparse_mm3 -= h * kPi * sparse * sparse;
     use.full_mm3 -= h * kPi * end * end;
-    use.joined_mm3 += h * kJoinedShare * rules.spacing * 2 * kPi * sparse;
+    use.edge_mm3 += h * rules.spacing * 2 * kPi * sparse;
   }
   return use;
 }

@@ -609,7 +609,7 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
     sparse.sparse_mm3 =
         std::max(0.0, volume * static_cast<double>(of.sparse) -
                           rules.spacing / 2 * (skin_strip + shade_strip) - rules.widening * shade_strip);
-    sparse.joined_mm3 = kJoinedShare * rules.spacing * edge;
+    sparse.edge_mm3 = rules.spacing * edge;
     sparse.border_mm3 = rules.spacing * raster.pixel * raster.layer_height * layer.border[side];
     sparse.full_mm3 = full[side] * std::max(0.0, volume * of.fill - solid);
   }
@@ -617,8 +617,8 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
 }
 
 SparseUse sum(const SparseUse& a, const SparseUse& b, double sign) {
-  return {a.joined_mm3 + sign * b.joined_mm3, a.sparse_mm3 + sign * b.sparse_mm3,
-          a.full_mm3 + sign * b.full_mm3, a.border_mm3 + sign * b.border_mm3};
+  return {a.edge_mm3 + sign * b.edge_mm3, a.sparse_mm3 + sign * b.sparse_mm3, a.full_mm3 + sign * b.full_mm3,
+          a.border_mm3 + sign * b.border_mm3};
 }
 
 FilamentUse sum(const FilamentUse& a, const FilamentUse& b, double sign) {
@@ -631,8 +631,8 @@ FilamentUse sum(const FilamentUse& a, const FilamentUse& b, double sign) {
 
 double SparseUse::volume_mm3(double infill, const PrintSettings& settings) const {
   if (infill >= 1) return full_mm3;
-  return (infill > 0 ? joined_mm3 : 0) + border_share(infill, settings) * border_mm3 +
-         printed_share(infill, settings.pattern) * sparse_mm3;
+  return (infill > 0 ? joined_share(infill, settings.pattern) * edge_mm3 : 0) +
+         border_share(infill, settings) * border_mm3 + printed_share(infill, settings.pattern) * sparse_mm3;
 }
 
 double FilamentUse::volume_mm3(const PrintSettings& settings) const {

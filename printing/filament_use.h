@@ -8,11 +8,11 @@ namespace aerate {
 // What a print takes of filament, mm3, as a model of what a slicer does (docs/economics.md). None of these depends on the
 // infill (but solid layers on whether modifiers have any), so that one pass over the layers answers for every infill.
 struct SparseUse {
-  double joined_mm3 = 0;  // what joins lines of sparse infill where they end
+  double edge_mm3 =
+      0;  // lines all along the edge of sparse infill, of which a share joins lines that end there
   double sparse_mm3 = 0;  // the space that lines of sparse infill run through
   double full_mm3 = 0;    // the same at full infill, whose lines run up to walls and solid layers
-  double border_mm3 =
-      0;  // lines all along the border of modifiers, of which a share joins lines that end there
+  double border_mm3 = 0;  // the same along the border of modifiers
 
   double volume_mm3(double infill, const PrintSettings& settings) const;
 };

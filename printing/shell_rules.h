@@ -36,7 +36,8 @@ double printed_share(double infill, InfillPattern pattern);
 // The share of the border of modifiers along which lines of sparse infill are joined that end there (0..1).
 double border_share(double infill, const PrintSettings& settings);
 
-// Lines of sparse infill are joined along this share of the edge that they end at. Fitted.
-constexpr double kJoinedShare = 0.545;
+// Lines of sparse infill are joined along this share of the edge that they end at (0..1): gyroid's less where they are dense,
+// since the ways from one to the next are short.
+double joined_share(double infill, InfillPattern pattern);
 
 }  // namespace aerate

@@ -77,7 +77,7 @@ TEST(PrintOptions, SparsePrintsWhereNoVoidPaysAreRefusedWithFigures) {
   const Job job;
   const auto cube = [](float edge) { return make_box({0, 0, 0}, {edge, edge, edge}); };
   expect_refused(job, cube(7), {"--infill", "30%", "--shape", "spheres"}, kNothing,
-                 {"30 % infill", "above a radius of 8.6", "the largest that fits has radius 2.3 mm",
+                 {"30 % infill", "above a radius of 8.8", "the largest that fits has radius 2.3 mm",
                   "voids of 2.3 mm save above", "modifier", "--force"});
   expect_refused(job, {"--infill", "15%", "--max-radius", "3.5"}, kNothing,
                  {"15 % infill", "above a radius of 18", "3.5 mm (--max-radius)",

@@ -40,7 +40,7 @@ TEST(Economics, ALoneVoidCostsTheSameByItsFormulaAndOnTheRaster) {
     EXPECT_NEAR(raster.wall_mm3, formula.wall_mm3, 0.02 * size);
     EXPECT_NEAR(raster.solid_mm3, formula.solid_mm3, 0.05 * size);
     EXPECT_NEAR(raster.sparse_mm3, formula.sparse_mm3, 0.05 * size);
-    EXPECT_NEAR(raster.joined_mm3, formula.joined_mm3, 0.05 * size);
+    EXPECT_NEAR(raster.edge_mm3, formula.edge_mm3, 0.05 * size);
   }
 }
 
@@ -91,10 +91,9 @@ TEST(Economics, AtTheBreakEvenInfillNothingIsSavedOrLost) {
 }
 
 TEST(Economics, SmallVoidsMakeAPrintLonger) {
-  const FilamentUse whole{
-      SparseUse{.joined_mm3 = 400, .sparse_mm3 = 40000, .full_mm3 = 41000}, 4000, 2000, {}};
+  const FilamentUse whole{SparseUse{.edge_mm3 = 800, .sparse_mm3 = 40000, .full_mm3 = 41000}, 4000, 2000, {}};
   const FilamentUse hollow{
-      SparseUse{.joined_mm3 = 1000, .sparse_mm3 = 8000, .full_mm3 = 10000}, 12000, 9000, {}};
+      SparseUse{.edge_mm3 = 2000, .sparse_mm3 = 8000, .full_mm3 = 10000}, 12000, 9000, {}};
   const std::vector<Sphere> voids(100, Sphere{{0, 0, 0}, 3, SphereKind::adaptive});
   EXPECT_EQ(time_change(whole, hollow, voids, PrintSettings{.infill = 0.15}), TimeChange::longer);
   EXPECT_EQ(time_change(whole, whole, {}, PrintSettings{.infill = 0.15}), TimeChange::same);

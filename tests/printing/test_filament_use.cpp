@@ -40,9 +40,11 @@ TEST(FilamentUse, ABlockHasWallsSkinsAndInfillOfItsOwnSize) {
   // Lines of sparse infill end half a spacing inside of that, and are joined there.
   const double lines = inside - spacing, height = side - 9 * 0.2;
   EXPECT_NEAR(use.sparse_mm3, height * lines * lines, 0.02 * height * lines * lines);
-  const double joints = kJoinedShare * 4 * lines * spacing * height;
-  EXPECT_NEAR(use.joined_mm3, joints, 0.1 * joints);
-  EXPECT_NEAR(use.volume_mm3(settings), use.wall_mm3 + use.solid_mm3 + use.joined_mm3 + 0.2 * use.sparse_mm3,
+  const double joints = 4 * lines * spacing * height;
+  EXPECT_NEAR(use.edge_mm3, joints, 0.1 * joints);
+  EXPECT_NEAR(use.volume_mm3(settings),
+              use.wall_mm3 + use.solid_mm3 + joined_share(0.2, settings.pattern) * use.edge_mm3 +
+                  0.2 * use.sparse_mm3,
               1e-6);
   EXPECT_NEAR(use.volume_mm3(PrintSettings{.infill = 1}), side * side * side, 0.02 * side * side * side);
 }
@@ -124,7 +126,7 @@ TEST(FilamentUse, TheNumberOfThreadsDoesNotMatter) {
   const FilamentUse one = use_with(1), four = use_with(4);
   EXPECT_EQ(one.wall_mm3, four.wall_mm3);
   EXPECT_EQ(one.solid_mm3, four.solid_mm3);
-  EXPECT_EQ(one.joined_mm3, four.joined_mm3);
+  EXPECT_EQ(one.edge_mm3, four.edge_mm3);
   EXPECT_EQ(one.sparse_mm3, four.sparse_mm3);
 }
 
