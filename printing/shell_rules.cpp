@@ -116,7 +116,7 @@ double joined_share(double infill, InfillPattern pattern) {
 double border_share(double infill, const PrintSettings& settings) {
   // Ends of lines on a millimetre of any curve (Cauchy, Crofton).
   const double ends = 2 / std::numbers::pi * infill / spacing_of(settings);
-  return std::min(kLinesJoined, kJoinedPerEnd * ends);
+  return std::min(joined_share(infill, settings.pattern), kJoinedPerEnd * ends);
 }
 
 }  // namespace aerate
