@@ -40,8 +40,15 @@ std::string about_config(const CLI::App& app, std::string what) {
   return app.get_config_ptr()->as<std::string>() + ": " + what;
 }
 
-// CLI11's message as an error of the program's own.
-[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
+std::string version_and_devices() {
+  std::string text = "aerate " AERATE_VERSION;
+  for (const std::string& device : describe_devices()) text += "\n" + device;
+  return text;
+}
+
+}  // namespace
+
+void refuse(const CLI::App& app, const CLI::ParseError& error) {
   std::string what = error.what();
   while (!what.empty() && what.back() == '\n') what.pop_back();
   if (dynamic_cast<const CLI::ConfigError*>(&error) != nullptr) {
@@ -56,14 +63,6 @@ std::string about_config(const CLI::App& app, std::string what) {
   if (app.got_subcommand("hook")) throw on_one_line(refusal);
   throw refusal;
 }
-
-std::string version_and_devices() {
-  std::string text = "aerate " AERATE_VERSION;
-  for (const std::string& device : describe_devices()) text += "\n" + device;
-  return text;
-}
-
-}  // namespace
 
 void run_command_line(int argc, const char* const* argv) {
   CLI::App app(
@@ -80,6 +79,7 @@ void run_command_line(int argc, const char* const* argv) {
   add_inspect_command(app, config);
   add_slice_command(app, config);
   add_hook_command(app, config);
+  add_studio_command(app, config);
 
   try {
     app.parse(argc, argv);
