@@ -33,7 +33,8 @@ function link(slots: readonly [Slot, Slot]): void {
   };
   follow(left, right);
   follow(right, left);
-  left.onMoved?.();
+  // The solid has no cut of its own.
+  (left.state().cut.axis ? left : right).onMoved?.();
 }
 
 // The same place in mm: their boxes may differ a little.
@@ -60,7 +61,11 @@ export class ComparisonView {
     this.slots = [new Slot(scenes, 'left-'), new Slot(scenes, 'right-')];
     this.choosers = [make('select', { 'aria-label': 'Left' }), make('select', { 'aria-label': 'Right' })];
     const sides = this.slots.map((slot, i) => {
-      this.choosers[i].addEventListener('change', () => this.showSide(i));
+      this.choosers[i].addEventListener('change', ({ currentTarget }) => {
+        const { dataset } = currentTarget as HTMLSelectElement;
+        dataset.chosen = dataset.model ?? '';
+        this.showSide(i);
+      });
       slot.onViewer = () => link(this.slots);
       return make('div', { class: 'side' }, this.choosers[i], slot.element);
     });
@@ -102,12 +107,13 @@ export class ComparisonView {
 
   private fillChoosers(model: Model, { columns }: Comparison): void {
     const last = columns.length - 1;
-    // The two that were made last, or the solid and what was made.
+    // The two that were made last, or the solid and what was made, until others are chosen.
     const first = [Math.max(last - 1, 0), last];
     this.choosers.forEach((chooser, i) => {
       const old = chooser.value;
+      const isKept = chooser.dataset.chosen === model.id && columns.some(({ id }) => id === old);
       chooser.replaceChildren(...columns.map(({ id, title }) => make('option', { value: id }, title)));
-      chooser.value = columns.some(({ id }) => id === old) && chooser.dataset.model === model.id ? old : columns[first[i]].id;
+      chooser.value = isKept ? old : columns[first[i]].id;
       chooser.dataset.model = model.id;
       this.showSide(i);
     });

@@ -20,7 +20,8 @@ export function showModels(into: HTMLElement, session: Session): void {
     chooser.value = '';
   });
   const limits = make('span', { class: 'note' });
-  const drop = make('button', { type: 'button', id: 'drop', class: 'drop' }, make('strong', {}, 'Drop a model here'), make('span', {}, 'or choose a file'), limits);
+  const words = make('span');
+  const drop = make('button', { type: 'button', id: 'drop', class: 'drop' }, make('strong', {}, 'Drop a model here'), words, limits);
   drop.addEventListener('click', () => chooser.click());
   const list = make('ul', { class: 'models', id: 'model-list' });
   const sent = make('ul', { class: 'models', id: 'uploads', role: 'status' });
@@ -34,7 +35,9 @@ export function showModels(into: HTMLElement, session: Session): void {
   let shown: readonly unknown[] = [];
   store.listen((page) => {
     const now = [page.models, page.chosen];
-    drop.classList.toggle('small', page.models.length > 0);
+    const isFirst = page.models.length === 0;
+    drop.classList.toggle('compact', !isFirst);
+    words.textContent = isFirst ? 'or choose a file' : 'Add another model';
     if (now.every((one, i) => one === shown[i])) return;
     shown = now;
     const focused = document.activeElement instanceof HTMLElement ? document.activeElement.dataset.model : undefined;

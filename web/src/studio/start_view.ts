@@ -72,6 +72,11 @@ export function showStart(into: HTMLElement, form: HTMLFormElement, session: Ses
     event.preventDefault();
     if (go.disabled) return;
     go.disabled = true;
-    void attempt(() => session.hollow(), go).finally(() => (go.disabled = false));
+    const hollow = async (): Promise<void> => {
+      await session.hollow();
+      // On a narrow window it is further down.
+      document.getElementById('show')?.scrollIntoView({ block: 'start' });
+    };
+    void attempt(hollow, go).finally(() => (go.disabled = false));
   });
 }
