@@ -50,48 +50,30 @@ const kTitles: Readonly<Record<string, string>> = {
 // What is asked first; the rest waits in groups.
 export const kMain: readonly string[] = ['as', 'shape', 'wall', 'gap', 'drain', 'infill'];
 
-const kGroups: readonly (readonly [string, readonly string[]])[] = [
-  ['Voids', ['min-radius', 'max-radius', 'cell-size', 'fillet', 'max-voids', 'packing', 'target-density', 'tolerance', 'max-triangles']],
-  ['When to stop', ['target-mass', 'target-saving', 'stand']],
-  ['Ceilings', ['overhang', 'bridge', 'up', 'build']],
-  ['Channels and holes', ['channel-diameter', 'hole-diameter', 'holes-on', 'holes-not-on', 'escape-hole', 'drain-cavities']],
-  ['The model', ['unit', 'scale', 'keep-solid', 'surface', 'voxel', 'max-hole', 'weld']],
-  ['Material', ['material', 'density', 'price', 'price-per', 'bulk-density']],
-  ['Slicer', ['flavor', 'modifier-infill', 'modifier-pattern', 'support-blockers']],
-];
-const kPrint = 'The print, for filament';
-
-// Rows of a process have names of their own.
-const kLimits: Readonly<Record<string, string>> = { 'channel-diameter': 'channel', 'hole-diameter': 'escape-hole' };
-
 function titleOf(name: string): string {
   const words = name.replaceAll('-', ' ');
   return kTitles[name] ?? words[0].toUpperCase() + words.slice(1);
 }
 
 export function fieldOf(row: OptionRow, process: Process | undefined): Field {
-  const limit = process?.rows.find(({ option }) => option === row.name || option === kLimits[row.name]);
+  const limit = process?.rows.find(({ option }) => option === row.name);
   const field = { row, title: titleOf(row.name), unit: row.unit || limit?.unit || '' };
   if (!limit) return { ...field, standard: row.default ?? '', source: '' };
-  return { ...field, standard: limit.value ?? 'none', source: limit.source };
+  return { ...field, standard: String(limit.value ?? 'none'), source: limit.source ?? '' };
 }
 
 export const isAsked = ({ name }: OptionRow): boolean => name !== 'process';
 
-// Every row is in one group; those that nobody sorted, at the end.
+// All but what is asked first, as the program sorts them.
 export function groupsOf(rows: readonly OptionRow[], process: Process | undefined): readonly Group[] {
-  const left = new Map(rows.filter((row) => isAsked(row) && !kMain.includes(row.name)).map((row) => [row.name, row]));
-  const take = (names: readonly string[]): Field[] =>
-    names.flatMap((name) => {
-      const row = left.get(name);
-      left.delete(name);
-      return row ? [fieldOf(row, process)] : [];
-    });
-  const groups = kGroups.map(([title, names]) => ({ title, fields: take(names) }));
-  const print = [...left.values()].filter((row) => row.group.toLowerCase().includes('print')).map(({ name }) => name);
-  groups.splice(5, 0, { title: kPrint, fields: take(print) });
-  groups.push({ title: 'More', fields: take([...left.keys()]) });
-  return groups.filter(({ fields }) => fields.length > 0);
+  const groups = new Map<string, Field[]>();
+  for (const row of rows) {
+    if (!isAsked(row) || kMain.includes(row.name)) continue;
+    const fields = groups.get(row.group) ?? [];
+    fields.push(fieldOf(row, process));
+    groups.set(row.group, fields);
+  }
+  return [...groups].map(([title, fields]) => ({ title, fields }));
 }
 
 // "1,5" as it is written in many countries; "1,2,3" is left as it is.
@@ -101,7 +83,7 @@ function plain(row: OptionRow, text: string): string {
 
 // What an entry says; null where it says nothing.
 export function valueOf(row: OptionRow, entry: string): Value | null {
-  if (row.kind === 'flag') return entry === 'true' ? true : entry === 'false' && row.negatable ? false : null;
+  if (row.kind === 'flag') return entry === 'true' ? true : entry === 'false' && row.off ? false : null;
   if (row.kind === 'list') {
     const lines = entry.split('\n').map((line) => line.trim());
     const given = lines.filter(Boolean);

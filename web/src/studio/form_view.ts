@@ -102,8 +102,14 @@ function processChoice(told: Told, set: Set): Entry {
     about.textContent = process ? sentence(`${process.title}; material ${process.material}`) : '';
     const rows = process?.rows ?? [];
     table.replaceChildren(
-      ...rows.map(({ option, value, unit, source }) =>
-        make('tr', {}, make('th', { scope: 'row' }, option), make('td', {}, value === null ? 'none' : `${value} ${unit}`), make('td', { class: 'source' }, source)),
+      ...rows.map(({ name: figure, value, unit, source }) =>
+        make(
+          'tr',
+          {},
+          make('th', { scope: 'row' }, figure),
+          make('td', {}, value === null ? 'none' : `${value} ${unit}`.trim()),
+          make('td', {}, source ?? ''),
+        ),
       ),
     );
   };
@@ -126,7 +132,7 @@ function makeEntry(row: OptionRow, set: Set, tellsSource: boolean): Entry {
   const id = `option-${row.name}`;
   const field = fieldOf(row, undefined);
   const put = (entry: string): void => set(row.name, entry);
-  const control = kWords[row.name] ? buttons(row, field, put) : row.kind === 'flag' && !row.negatable ? box(row, field, put) : input(row, put);
+  const control = kWords[row.name] ? buttons(row, field, put) : row.kind === 'flag' && !row.off ? box(row, field, put) : input(row, put);
   const about = make('p', { class: 'note about', id: `${id}-about`, hidden: '' }, sentence(row.description));
   const option = make('code', {}, `--${row.name}`);
   about.append(' ', option);

@@ -12,7 +12,7 @@ import { Session } from './session';
 import { showTabs, showView } from './show_view';
 import { showStart } from './start_view';
 import { onChange, Store, type Connection } from './store';
-import { takeToken } from './token';
+import { listenToAddress, takeToken } from './token';
 
 const kConnection: Readonly<Record<Connection, string>> = {
   opening: 'Asking the program …',
@@ -55,6 +55,7 @@ function main(): void {
   const store = new Store();
   const session = new Session(new Api(takeToken()), store);
   const setup = byId('setup', HTMLFormElement);
+  listenToAddress();
   showConnection(store);
   showModels(byId('models', HTMLElement), session);
   showForm(byId('print', HTMLElement), store);

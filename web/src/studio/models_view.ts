@@ -14,7 +14,7 @@ export function sizeOf({ report: { input } }: Model): string {
 
 export function showModels(into: HTMLElement, session: Session): void {
   const { store } = session;
-  const chooser = make('input', { type: 'file', id: 'chooser', multiple: '', hidden: '', tabindex: '-1' });
+  const chooser = make('input', { type: 'file', id: 'chooser', multiple: '', hidden: '', tabindex: '-1', 'aria-label': 'Models' });
   chooser.addEventListener('change', () => {
     session.send(chooser.files ?? []);
     chooser.value = '';

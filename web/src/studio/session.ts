@@ -2,7 +2,7 @@
 import { Refusal, troubleOf, type Api } from './api';
 import type { ServerEvent } from './event_stream';
 import { modelChosen, type Store, type Upload } from './store';
-import type { Job, Told, Trouble } from './told';
+import type { Job, Model, Told, Trouble } from './told';
 import { bytesIn } from './words';
 
 export const isEnded = ({ state }: Job): boolean => state === 'done' || state === 'failed' || state === 'stopped';
@@ -62,11 +62,11 @@ export class Session {
 
   private hear({ name, data }: ServerEvent): void {
     if (name === 'job') {
-      const job = JSON.parse(data) as Job & { readonly removed?: boolean };
-      if (job.removed) this.forgetJob(job.id);
-      else this.takeJob(job);
+      this.takeJob(JSON.parse(data) as Job);
     } else if (name === 'model') {
-      this.refresh().catch(() => undefined); // the stream ends as well, then
+      this.takeModel(JSON.parse(data) as Model);
+    } else if (name === 'removed') {
+      this.forget((JSON.parse(data) as { readonly id: string }).id);
     }
   }
 
@@ -76,10 +76,23 @@ export class Session {
     this.store.set({ jobs: isNew ? [...jobs, job] : jobs.map((old) => (old.id === job.id ? job : old)) });
   }
 
-  private forgetJob(id: string): void {
-    const { jobs, shown } = this.store.now;
-    const isShown = shown.kind === 'job' && shown.id === id;
-    this.store.set({ jobs: jobs.filter((job) => job.id !== id), ...(isShown ? { shown: { kind: 'model' } } : {}) });
+  private takeModel(model: Model): void {
+    const { models, chosen } = this.store.now;
+    if (models.some(({ id }) => id === model.id)) return;
+    this.store.set({ models: [...models, model], ...(chosen === null ? { chosen: model.id } : {}) });
+  }
+
+  // A model or a job; those of a model are told one by one.
+  private forget(gone: string): void {
+    const { models, jobs, shown, chosen } = this.store.now;
+    const left = models.filter(({ id }) => id !== gone);
+    const isShown = gone === chosen || (shown.kind === 'job' && shown.id === gone);
+    this.store.set({
+      models: left,
+      jobs: jobs.filter(({ id }) => id !== gone),
+      ...(gone === chosen ? { chosen: left.at(-1)?.id ?? null } : {}),
+      ...(isShown ? { shown: { kind: 'model' } } : {}),
+    });
   }
 
   private change(id: number, change: Partial<Upload>): void {
@@ -125,8 +138,7 @@ export class Session {
       try {
         this.change(id, { share: 0 });
         const model = await this.api.upload(file, (share) => this.change(id, { share }), stop.signal);
-        const { models } = this.store.now;
-        if (!models.some((one) => one.id === model.id)) this.store.set({ models: [...models, model] });
+        this.takeModel(model);
         this.store.set({ chosen: model.id, shown: { kind: 'model' } });
         this.drop(id);
       } catch (error) {
@@ -165,12 +177,12 @@ export class Session {
 
   async removeJob(id: string): Promise<void> {
     await this.api.remove('jobs', id);
-    this.forgetJob(id);
+    this.forget(id);
   }
 
   async removeModel(id: string): Promise<void> {
     await this.api.remove('models', id);
-    await this.refresh();
+    this.forget(id);
   }
 }
 

@@ -12,3 +12,12 @@ export function takeToken(): string {
   }
   return window.sessionStorage.getItem(kKey) ?? '';
 }
+
+// A new address in the same tab changes nothing but what is behind the '#'.
+export function listenToAddress(): void {
+  window.addEventListener('hashchange', () => {
+    if (window.location.hash.length <= 1) return;
+    takeToken();
+    window.location.reload();
+  });
+}

@@ -8,15 +8,16 @@ export interface OptionRow {
   readonly choices?: readonly string[];
   readonly description: string;
   readonly group: string;
-  readonly negatable?: boolean; // a flag that can be false, too
+  readonly off?: boolean; // a flag that can be false, too
   readonly bare?: boolean; // may be given without a value
 }
 
 export interface ProcessRow {
-  readonly option: string;
-  readonly value: string | null;
+  readonly option: string | null; // that sets it, if one does
+  readonly name: string;
+  readonly value: number | string | null; // null: the process has no such limit
   readonly unit: string;
-  readonly source: string;
+  readonly source: string | null;
 }
 
 export interface Process {

@@ -10,11 +10,12 @@ export function bytesIn(bytes: number): string {
 
 export const secondsIn = (seconds: number): string => (seconds < 10 ? `${seconds.toFixed(1)} s` : `${format(seconds, 0)} s`);
 
-// Words of the command line begin small and end without a point.
+// Words of the command line begin small and end without a point. Names of files and options stay as they are.
 export function sentence(text: string): string {
   if (text === '') return '';
+  const isWord = /^[a-z]+([ ,;:]|$)/.test(text);
   const end = /[.!?…]$/.test(text) ? '' : '.';
-  return text[0].toUpperCase() + text.slice(1) + end;
+  return (isWord ? text[0].toUpperCase() + text.slice(1) : text) + end;
 }
 
 export const sentences = ({ what, hint }: Trouble): string => [what, hint ?? ''].filter(Boolean).map(sentence).join(' ');

@@ -17,9 +17,9 @@ const kProcess: Process = {
   title: 'resin printers',
   material: 'resin',
   rows: [
-    { option: 'wall', value: '2', unit: 'mm', source: 'a guide' },
-    { option: 'bridge', value: null, unit: 'mm', source: '' },
-    { option: 'escape-hole', value: '3.5', unit: 'mm', source: 'another guide' },
+    { option: 'wall', name: 'wall', value: 2, unit: 'mm', source: 'a guide' },
+    { option: 'bridge', name: 'bridge', value: null, unit: 'mm', source: null },
+    { option: null, name: 'least-wall', value: 0.5, unit: 'mm', source: 'another guide' },
   ],
 };
 
@@ -28,19 +28,17 @@ it('takes what holds by default from the process, with its source, before what t
   expect(fieldOf(wall, kProcess)).toMatchObject({ title: 'Wall', standard: '2', unit: 'mm', source: 'a guide' });
   expect(fieldOf(wall, undefined)).toMatchObject({ standard: '1.2', source: '' });
   expect(fieldOf(row('bridge', 'number'), kProcess).standard).toBe('none');
-  expect(fieldOf(row('hole-diameter', 'number'), kProcess)).toMatchObject({ standard: '3.5', unit: 'mm' });
   expect(fieldOf(row('some-new-thing', 'text'), kProcess)).toMatchObject({ title: 'Some new thing', standard: '' });
 });
 
-it('shows each option once, and those that nobody sorted too', () => {
-  const names = ['process', 'wall', 'infill', 'max-radius', 'layer-height', 'some-new-thing', 'unit', 'material'];
-  const rows = names.map((name) => row(name, 'text', { group: name === 'layer-height' ? 'The print, for filament' : '' }));
-  const groups = groupsOf(rows, kProcess);
-  const inGroups = groups.flatMap(({ fields }) => fields.map((field) => field.row.name));
+it('shows each option once, in the groups and the order that the program tells', () => {
+  const names = ['process', 'up', 'wall', 'max-radius', 'infill', 'layer-height', 'force'];
+  const group = ['Process', 'Process', 'Limits', 'Limits', 'The print', 'The print', 'More'];
+  const rows = names.map((name, i) => row(name, 'text', { group: group[i] }));
+  const groups = groupsOf(rows, kProcess).map(({ title, fields }) => [title, ...fields.map((field) => field.row.name)]);
+  expect(groups).toEqual([['Process', 'up'], ['Limits', 'max-radius'], ['The print', 'layer-height'], ['More', 'force']]);
   const main = rows.filter((one) => kMain.includes(one.name)).map(({ name }) => name);
-  expect([...inGroups, ...main, 'process'].sort()).toEqual([...names].sort());
-  expect(groups.find(({ fields }) => fields.some((field) => field.row.name === 'layer-height'))?.title).toBe('The print, for filament');
-  expect(groups.at(-1)?.title).toBe('More');
+  expect(main).toEqual(['wall', 'infill']);
   expect(rows.filter(isAsked)).toHaveLength(names.length - 1);
 });
 
@@ -56,7 +54,7 @@ it('sends what was given, and nothing else', () => {
 });
 
 it('knows flags that are off from flags that nobody touched', () => {
-  const drain = row('drain', 'flag', { negatable: true });
+  const drain = row('drain', 'flag', { off: true });
   expect([valueOf(drain, 'true'), valueOf(drain, 'false'), valueOf(drain, '')]).toEqual([true, false, null]);
   const blockers = row('support-blockers', 'flag');
   expect([valueOf(blockers, 'true'), valueOf(blockers, 'false')]).toEqual([true, null]);

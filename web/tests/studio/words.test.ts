@@ -10,6 +10,7 @@ it('makes sentences of the words of the command line', () => {
   expect(sentence('the mesh is open')).toBe('The mesh is open.');
   expect(sentence('Already one!')).toBe('Already one!');
   expect(sentence('')).toBe('');
+  expect(sentence('bunny.stl has no inside')).toBe('bunny.stl has no inside.');
   expect(sentences({ what: 'it is open', hint: 'try --surface remesh' })).toBe('It is open. Try --surface remesh.');
 });
 
