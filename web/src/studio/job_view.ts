@@ -14,7 +14,7 @@ interface Part {
 // While it waits or runs. Stages that were heard of stay in the list.
 function progress(session: Session, id: string): Part {
   const title = make('h2');
-  const bar = make('progress', { max: '1', 'aria-label': 'Progress' });
+  const bar = make('progress', { max: '1', 'aria-label': 'Progress of this stage' });
   const stages = make('ol', { class: 'stages' });
   const said = make('p', { class: 'note', role: 'status' });
   const stop = button('Stop', () => session.stop(id));
@@ -93,6 +93,7 @@ export class JobView {
     const wasEnded = !isOther && this.last !== null && isEnded(this.last);
     this.last = job;
     this.element.dataset.state = job.state;
+    this.element.dataset.seconds = String(job.seconds ?? '');
     if (isEnded(job)) {
       if (wasEnded) return;
       this.running = null;

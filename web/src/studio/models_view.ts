@@ -61,8 +61,9 @@ function entry(model: Model, { chosen }: Page, session: Session): HTMLElement {
   remove.classList.add('small');
   const item = make('li', { class: isChosen ? 'chosen-model' : '' }, choose, remove);
   if (isChosen || !model.usable) {
-    const use = make('p', { class: model.usable ? 'note use' : 'use bad' }, sentence(model.use));
-    item.append(use);
+    // Of what cannot be used, exactly what the command line says.
+    const use = model.usable ? model.use.replace(/^'aerate hollow'/, 'hollowing') : model.use;
+    item.append(make('p', { class: model.usable ? 'note use' : 'use bad' }, sentence(use)));
   }
   return item;
 }

@@ -34,6 +34,7 @@ const kStages: Readonly<Record<string, string>> = {
   write: 'Writing',
   check: 'Reading back and checking',
   cups: 'Looking for cups',
+  picture: 'Preparing the view',
   page: 'Preparing the view',
 };
 
