@@ -56,11 +56,12 @@ void refuse(const CLI::App& app, const CLI::ParseError& error) {
                      "its lines are options by their long names without dashes, as in 'wall = 1.2'");
   }
   std::string command = app.get_name();
-  for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  for (const CLI::App* each : chosen) command += " " + each->get_name();
   const std::vector<std::string> unknown = app.remaining();
-  if (app.get_subcommands().empty() && !unknown.empty()) what = "'" + unknown.front() + "' is no command";
+  if (chosen.empty() && !unknown.empty()) what = "'" + unknown.front() + "' is no command";
   const UsageError refusal(what, "see '" + command + " --help'");
-  if (app.got_subcommand("hook")) throw on_one_line(refusal);
+  if (!chosen.empty() && chosen.front()->get_name() == "hook") throw on_one_line(refusal);
   throw refusal;
 }
 

@@ -28,7 +28,7 @@ using studio::OptionKind;
 using studio::OptionRow;
 
 // Beside those that name files: how the program runs, what pictures look like, and plugs, which are a file of their own.
-constexpr std::array<std::string_view, 8> kNotOffered{"help",           "threads",      "quiet",
+constexpr std::array<std::string_view, 9> kNotOffered{"help", "device",           "threads",      "quiet",
                                                       "picture-cut",    "picture-size", "picture-colour",
                                                       "plug-clearance", "plug-taper"};
 
@@ -48,7 +48,7 @@ const std::vector<Group>& groups() {
         "target-mass", "target-density", "stand", "keep-solid"}},
       {"Shape of voids", {"shape", "cell-size", "fillet", "packing", "tolerance", "max-triangles"}},
       {"Drainage",
-       {"drain", "channel", "escape-hole-diameter", "escape-hole", "holes-on", "holes-not-on",
+       {"drain", "channel-diameter", "hole-diameter", "escape-hole", "holes-on", "holes-not-on",
         "drain-cavities"}},
       {"Modifiers", {"modifier-infill", "modifier-pattern"}},
       {"Material", {"material", "density", "price", "price-per", "bulk-density"}},
@@ -195,7 +195,7 @@ studio::Plan plan_of(const std::vector<OptionRow>& rows, const studio::PlanReque
     add_arguments(arguments, *row, given);
   }
   studio::Plan plan;
-  plan.forms = forms_of_hollow(request.model, request.folder / "result", arguments);
+  plan.forms = forms_of_hollow(request.model, request.stem, arguments);
   const std::string ending = plan.forms.front().options.output.extension().string();
   plan.output_name = studio::name_of_result(request.name, ending);
   plan.command = fmt::format("aerate hollow {} -o {}", named(request.name), named(plan.output_name));

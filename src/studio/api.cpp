@@ -86,6 +86,10 @@ Answer change(Studio& studio, const ApiRequest& request, std::span<const std::st
     const JobRequest job = parse_job_request(whole(body));
     return of(json_of(studio.start_job(job.model, job.options, job.options_as_sent)));
   }
+  if (count == 1 && is(0, "estimate")) {
+    const JobRequest job = parse_job_request(whole(body));
+    return of(json_of(studio.outlook(job.model, job.options)));
+  }
   if (count == 3 && is(0, "jobs") && is(2, "stop")) return of(json_of(studio.stop_job(words[1])));
   if (count == 3 && is(2, "remove")) {
     if (is(0, "jobs")) {

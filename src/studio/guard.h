@@ -31,8 +31,8 @@ struct ServedAt {
 // What of a request says who asks for what. A header that is absent is nothing, and one that is there twice is refused before.
 struct RequestHead {
   std::string method, path;
-  std::optional<std::string> host, origin, fetch_site, authorization, content_type, content_encoding;
-  std::optional<std::string> content_length;
+  std::optional<std::string> host = {}, origin = {}, fetch_site = {}, authorization = {}, content_type = {},
+                             content_encoding = {}, content_length = {};
 };
 
 struct Guard {

@@ -12,6 +12,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <system_error>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -96,8 +97,8 @@ class Connection final : public httplib::Stream {
     const auto patience =
         is_in_head_ ? std::chrono::duration_cast<milliseconds>(begin_of_head_ + kHeadPatience - Clock::now())
                     : milliseconds(kPiecePatience);
-    if (patience.count() <= 0 || head_bytes_ >= kMostHeadBytes || !waits(POLLIN, patience)) return false;
     const std::size_t most = is_in_head_ ? kMostHeadBytes - head_bytes_ : buffer_.size();
+    if (patience.count() <= 0 || most == 0 || !waits(POLLIN, patience)) return false;
     const ssize_t count = ::recv(socket_, buffer_.data(), std::min(most, buffer_.size()), 0);
     if (count <= 0) return false;
     begin_ = 0;
@@ -192,14 +193,9 @@ class HttpServer::Listener final : public httplib::Server {
       const int yes = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
-    if (port == 0) {
-      port = bind_to_any_port(host);
-      if (port <= 0)
-        throw UsageError(fmt::format("{} is no address of this machine", host), "leave out --host");
-    } else if (!bind_to_port(host, port)) {
-      throw UsageError(fmt::format("port {} of {} cannot be had: {}", port, host, why_not(host, port)),
-                       "leave out --port, and a free one is taken; or give another");
-    }
+    errno = 0;
+    const bool is_bound = port == 0 ? (port = bind_to_any_port(host)) > 0 : bind_to_port(host, port);
+    if (!is_bound) refuse_port(host, port);
     guard_ = {{host, port}, std::move(token), studio_.bounds().body_bytes};
     route();
     thread_ = std::thread([this] { listen_after_bind(); });
@@ -217,8 +213,11 @@ class HttpServer::Listener final : public httplib::Server {
   const Guard& guard() const { return guard_; }
 
  private:
-  static std::string why_not(const std::string& host, int port) {
-    return fmt::format("{}:{} is in use, or not for everybody", host, port);
+  [[noreturn]] static void refuse_port(const std::string& host, int port) {
+    const std::string why = errno == 0 ? "the system says not why" : std::generic_category().message(errno);
+    if (port <= 0) throw UsageError(fmt::format("--host {} cannot be had: {}", host, why), "leave out --host");
+    throw UsageError(fmt::format("--port {} of {} cannot be had: {}", port, host, why),
+                     "leave out --port, and a free one is taken; or give another");
   }
 
   bool process_and_close_socket(socket_t socket) override {

@@ -39,12 +39,12 @@ struct OptionRow {
 struct PlanRequest {
   std::filesystem::path model;   // its file
   std::string name;              // what the user calls it: "bunny.stl"
-  std::filesystem::path folder;  // where results go
+  std::filesystem::path stem;   // of the result, without its ending
   std::vector<GivenOption> options;
 };
 
 struct Plan {
-  std::vector<JobForm> forms = {};  // their output is in the folder
+  std::vector<JobForm> forms = {};  // their output is the stem with an ending
   std::string output_name = {};     // what the user is to call it: "bunny-hollow.stl"
   std::string command = {};         // the command line that does the same
 };

@@ -22,11 +22,17 @@ std::string name_of_result(const std::string& model_name, std::string_view endin
 // A value of the header Content-Disposition, for a file to be saved under this name.
 std::string attachment_called(const std::string& name);
 
+// What files are called in the private folder: as nobody calls a model, so that they are told from other words.
+inline constexpr const char* kModelStem = "aerate-studio-model";
+inline constexpr const char* kResultStem = "aerate-studio-result";
+
 // Texts of the pipeline name the files that it was given. These are what the user calls them.
 class ShownPaths {
  public:
+  // With or without its folder; no other file may have this name.
   void add(const std::filesystem::path& path, const std::string& name) {
     names_.emplace_back(path.string(), name);
+    names_.emplace_back(path.filename().string(), name);
   }
   std::string in(std::string text) const;
 

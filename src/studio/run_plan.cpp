@@ -1,5 +1,6 @@
 #include "studio/run_plan.h"
 
+#include <fmt/format.h>
 #include <utility>
 
 #include "files/output_file.h"
@@ -32,7 +33,7 @@ void write_other_form(const HollowedForm& made, const fs::path& folder, Monitor&
 }  // namespace
 
 fs::path result_in(const fs::path& folder, const std::string& form) {
-  return folder / ("result." + form);
+  return folder / fmt::format("{}.{}", kResultStem, form);
 }
 
 std::vector<ResultFile> run_plan(const Plan& plan, const std::string& model_name, const fs::path& folder,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <fmt/format.h>
 #include <utility>
@@ -40,6 +41,7 @@ double seconds_since(Clock::time_point begin) {
 
 struct Studio::Model {
   ModelRecord record;
+  std::shared_ptr<const DepthSamples> depths;  // of a closed one that can be used
   fs::path folder, file;     // the folder is gone with it
   std::uint64_t moment = 0;  // of its last change
 
@@ -140,7 +142,7 @@ Upload::Upload(std::string id, std::string name, const fs::path& parent, std::ui
     : id_(std::move(id)),
       name_(std::move(name)),
       folder_(parent / id_),
-      path_(folder_.path() / ("model" + ending_of_model(name_))),
+      path_(folder_.path() / (kModelStem + ending_of_model(name_))),
       file_(std::in_place, path_),
       most_bytes_(most_bytes),
       ticket_(std::move(ticket)) {}
@@ -222,6 +224,10 @@ ModelRecord Studio::take(std::unique_ptr<Upload> upload) {
       made->record.inspection = lent_.inspection_json(report);
       made->record.is_usable = inspected.is_usable;
       made->record.use = report.use;
+      const Inspection& inspection = report.input.inspection;
+      if (inspected.is_usable && inspection.closed())
+        made->depths = std::make_shared<DepthSamples>(
+            sample_depths(inspected.mesh, std::abs(inspection.filled_volume)));
     });
   } catch (...) {
     Refusal refusal = refusal_of(std::current_exception());
@@ -259,14 +265,20 @@ KeptFile Studio::scene_of_model(const std::string& id) const {
   return {found.folder / kSceneFile, found.record.name + ".scene"};
 }
 
-Plan Studio::plan(const std::string& id, const std::vector<GivenOption>& options) const {
+Studio::Outlook Studio::outlook(const std::string& id, const std::vector<GivenOption>& options) const {
   PlanRequest request;
+  std::shared_ptr<const DepthSamples> depths;
   {
     const std::lock_guard lock(mutex_);
     const Model& found = model(id);
-    request = {found.file, found.record.name, folder_, options};
+    if (!found.record.is_usable)
+      throw Refused({422, found.record.use, "", static_cast<int>(ExitCode::unusable_mesh)});
+    request = {found.file, found.record.name, folder_ / kResultStem, options};
+    depths = found.depths;
   }
-  return lent_.plan(request);
+  Outlook outlook{lent_.plan(request), std::nullopt};
+  if (depths) outlook.estimate = estimate_job(*depths, outlook.plan.forms);
+  return outlook;
 }
 
 JobRecord Studio::start_job(const std::string& model_id, const std::vector<GivenOption>& options,
@@ -279,7 +291,7 @@ JobRecord Studio::start_job(const std::string& model_id, const std::vector<Given
                    "remove one whose result is no longer needed"});
   const std::string id = fmt::format("j{}", jobs_made_ + 1);
   const fs::path path = folder_ / id;
-  made->plan = lent_.plan({of.file, of.record.name, path, options});
+  made->plan = lent_.plan({of.file, of.record.name, path / kResultStem, options});
   NewFolder folder(path);
   ++jobs_made_;
   JobRecord& record = made->record;

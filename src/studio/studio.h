@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "files/output_file.h"
+#include "pipeline/estimate.h"
 #include "studio/lent.h"
 #include "studio/names.h"
 #include "studio/private_folder.h"
@@ -64,8 +65,13 @@ class Studio {
   void remove_model(const std::string& id);
   KeptFile scene_of_model(const std::string& id) const;
 
-  // What a job would be. Throws UsageError.
-  Plan plan(const std::string& model, const std::vector<GivenOption>& options) const;
+  // What a job would be, and come to where that can be told. Throws UsageError, and for a model that cannot be used what the job would
+  // begin with.
+  struct Outlook {
+    Plan plan;
+    std::optional<JobEstimate> estimate;  // absent for an open model, of which that cannot be told
+  };
+  Outlook outlook(const std::string& model, const std::vector<GivenOption>& options) const;
 
   //   options: the same as JSON, for whoever asks for the job later
   JobRecord start_job(const std::string& model, const std::vector<GivenOption>& options,

@@ -1,5 +1,6 @@
 #include "studio/studio_json.h"
 
+#include <fmt/format.h>
 #include <utility>
 
 #include "files/formats.h"
@@ -45,6 +46,24 @@ Json json_of(const Process& process) {
           {"material", process.material},
           {"drains", process.drainage == Drainage::needed},
           {"rows", rows}};
+}
+
+struct Figures {
+  double volume = 0, mass = 0, cost = 0;  // mm3, g, currency
+};
+
+Figures figures_of(double volume, const Material& material) {
+  const double mass = volume * material.density_g_cm3 / 1000;
+  return {volume, mass, mass * material.price_per_kg / 1000};
+}
+
+Json range_of(const ShareRange& range) {
+  return {{"from", range.from}, {"to", range.to}};
+}
+
+std::string percents(const ShareRange& range) {
+  const std::string from = fmt::format("{:.0f}", 100 * range.from), to = fmt::format("{:.0f}", 100 * range.to);
+  return from == to ? to + " %" : from + " to " + to + " %";
 }
 
 template <typename Records>
@@ -102,6 +121,36 @@ Json json_of(const JobRecord& job) {
                {"files", files},
                {"seconds", job.seconds}};
   if (job.error) json["error"] = json_of(*job.error);
+  return json;
+}
+
+Json json_of(const Studio::Outlook& outlook) {
+  const HollowOptions& options = outlook.plan.forms.front().options;
+  Json json = {{"command", outlook.plan.command}, {"rows", Json::array()}, {"solid", nullptr}, {"removed", nullptr}, {"deeper", nullptr}};
+  const auto row = [&](const char* label, std::string value) {
+    json["rows"].push_back({{"label", label}, {"value", std::move(value)}});
+  };
+  if (!outlook.estimate) {
+    row("Estimate", "none: the model is open, and is meshed anew first");
+    return json;
+  }
+  const JobEstimate& estimate = *outlook.estimate;
+  const Figures solid = figures_of(estimate.solid_volume, options.material);
+  json["solid"] = {{"volume", solid.volume}, {"mass", solid.mass}, {"cost", solid.cost}};
+  json["removed"] = range_of(estimate.removed);
+  json["deeper"] = range_of(estimate.deeper);
+  row("Solid", fmt::format("{:.4g} cm3, {:.4g} g of {}", solid.volume / 1000, solid.mass, options.material.name));
+  row("Deeper than the wall", percents(estimate.deeper));
+  if (estimate.removed.to <= 0) {
+    row(options.modifiers ? "Modifiers" : "Removed", "nothing: no room is deep enough");
+    return json;
+  }
+  row(options.modifiers ? "Modifiers fill, about" : "Removed, about", percents(estimate.removed));
+  if (options.modifiers) return json;
+  row("Saves, about", fmt::format("{:.3g} to {:.3g} g of solid {}", estimate.removed.from * solid.mass,
+                                  estimate.removed.to * solid.mass, options.material.name));
+  if (options.infill_is_known)
+    row("Filament", "what the print takes is predicted by the job itself");
   return json;
 }
 

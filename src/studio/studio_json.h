@@ -20,6 +20,8 @@ Json json_of(const ModelRecord& model);
 Json json_of(const JobRecord& job);
 Json json_of(const Refusal& refusal);
 
+Json json_of(const Studio::Outlook& outlook);
+
 // Everything that a tab needs to show what there is.
 Json state_of(const Studio& studio);
 
