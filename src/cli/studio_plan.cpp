@@ -28,9 +28,9 @@ using studio::OptionKind;
 using studio::OptionRow;
 
 // Beside those that name files: how the program runs, what pictures look like, and plugs, which are a file of their own.
-constexpr std::array<std::string_view, 9> kNotOffered{"help", "device",           "threads",      "quiet",
-                                                      "picture-cut",    "picture-size", "picture-colour",
-                                                      "plug-clearance", "plug-taper"};
+constexpr std::array<std::string_view, 9> kNotOffered{"help",           "device",         "threads",
+                                                      "quiet",          "picture-cut",    "picture-size",
+                                                      "picture-colour", "plug-clearance", "plug-taper"};
 
 constexpr std::string_view kFile = "FILE";
 

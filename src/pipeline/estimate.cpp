@@ -29,7 +29,7 @@ struct Taken {
 constexpr Taken kTaken[] = {
     {false, false, false, {0.35, 0.85}}, {false, false, true, {0.35, 0.85}}, {false, true, false, {0.3, 0.8}},
     {false, true, true, {0.3, 0.8}},     {true, false, false, {0.6, 1}},     {true, false, true, {0.5, 0.95}},
-    {true, true, false, {0.6, 1}},    {true, true, true, {0.3, 0.9}},
+    {true, true, false, {0.6, 1}},       {true, true, true, {0.3, 0.9}},
 };
 
 ShareRange taken_by(const HollowOptions& options) {
@@ -51,8 +51,8 @@ ShareRange within_target(ShareRange range, const HollowOptions& options, double 
   const auto& target = options.target;
   if (!target) return range;
   const double grams = volume * options.material.density_g_cm3 / 1000;
-  const double share = target->kind == SavingTarget::Kind::share ? target->value
-                                                                  : std::max(0.0, 1 - target->value / grams);
+  const double share =
+      target->kind == SavingTarget::Kind::share ? target->value : std::max(0.0, 1 - target->value / grams);
   return {std::min(share, range.to), std::min(kMoreThanAsked * share, range.to)};
 }
 
@@ -91,7 +91,8 @@ JobEstimate estimate_job(const DepthSamples& samples, std::span<const JobForm> f
   bool is_first = true;
   for (const JobForm& form : forms) {
     const PackingLimits limits = form.options.packing.limits();
-    const ShareRange deeper{share_deeper(samples, limits.wall / least), share_deeper(samples, limits.wall / most)};
+    const ShareRange deeper{share_deeper(samples, limits.wall / least),
+                            share_deeper(samples, limits.wall / most)};
     // Without room for the smallest void there is none.
     const bool may_be_some = share_deeper(samples, (limits.wall + limits.min_radius) / most) > 0;
     const bool is_sure = share_deeper(samples, (limits.wall + limits.min_radius) / least) > 0;

@@ -12,8 +12,9 @@ namespace aerate {
 
 // How deep in a model its points lie: what a job could remove is told from it at once, whatever its limits.
 struct DepthSamples {
-  double volume = 0;           // of the model, mm3
-  std::vector<double> depths;  // mm, ascending: distances from the surface of points that are spread evenly inside it
+  double volume = 0;  // of the model, mm3
+  std::vector<double>
+      depths;  // mm, ascending: distances from the surface of points that are spread evenly inside it
 };
 
 // Of a closed mesh, which has this volume, with the unit and scale that it was read with; the points are always the same.

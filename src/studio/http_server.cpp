@@ -215,7 +215,8 @@ class HttpServer::Listener final : public httplib::Server {
  private:
   [[noreturn]] static void refuse_port(const std::string& host, int port) {
     const std::string why = errno == 0 ? "the system says not why" : std::generic_category().message(errno);
-    if (port <= 0) throw UsageError(fmt::format("--host {} cannot be had: {}", host, why), "leave out --host");
+    if (port <= 0)
+      throw UsageError(fmt::format("--host {} cannot be had: {}", host, why), "leave out --host");
     throw UsageError(fmt::format("--port {} of {} cannot be had: {}", port, host, why),
                      "leave out --port, and a free one is taken; or give another");
   }

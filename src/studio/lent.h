@@ -37,8 +37,8 @@ struct OptionRow {
 
 // What is to be done with a model that the studio keeps.
 struct PlanRequest {
-  std::filesystem::path model;   // its file
-  std::string name;              // what the user calls it: "bunny.stl"
+  std::filesystem::path model;  // its file
+  std::string name;             // what the user calls it: "bunny.stl"
   std::filesystem::path stem;   // of the result, without its ending
   std::vector<GivenOption> options;
 };

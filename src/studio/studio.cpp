@@ -42,8 +42,8 @@ double seconds_since(Clock::time_point begin) {
 struct Studio::Model {
   ModelRecord record;
   std::shared_ptr<const DepthSamples> depths;  // of a closed one that can be used
-  fs::path folder, file;     // the folder is gone with it
-  std::uint64_t moment = 0;  // of its last change
+  fs::path folder, file;                       // the folder is gone with it
+  std::uint64_t moment = 0;                    // of its last change
 
   ~Model() {
     std::error_code error;
@@ -226,8 +226,8 @@ ModelRecord Studio::take(std::unique_ptr<Upload> upload) {
       made->record.use = report.use;
       const Inspection& inspection = report.input.inspection;
       if (inspected.is_usable && inspection.closed())
-        made->depths = std::make_shared<DepthSamples>(
-            sample_depths(inspected.mesh, std::abs(inspection.filled_volume)));
+        made->depths =
+            std::make_shared<DepthSamples>(sample_depths(inspected.mesh, std::abs(inspection.filled_volume)));
     });
   } catch (...) {
     Refusal refusal = refusal_of(std::current_exception());

@@ -62,7 +62,8 @@ Json range_of(const ShareRange& range) {
 }
 
 std::string percents(const ShareRange& range) {
-  const std::string from = fmt::format("{:.0f}", 100 * range.from), to = fmt::format("{:.0f}", 100 * range.to);
+  const std::string from = fmt::format("{:.0f}", 100 * range.from),
+                    to = fmt::format("{:.0f}", 100 * range.to);
   return from == to ? to + " %" : from + " to " + to + " %";
 }
 
@@ -126,7 +127,11 @@ Json json_of(const JobRecord& job) {
 
 Json json_of(const Studio::Outlook& outlook) {
   const HollowOptions& options = outlook.plan.forms.front().options;
-  Json json = {{"command", outlook.plan.command}, {"rows", Json::array()}, {"solid", nullptr}, {"removed", nullptr}, {"deeper", nullptr}};
+  Json json = {{"command", outlook.plan.command},
+               {"rows", Json::array()},
+               {"solid", nullptr},
+               {"removed", nullptr},
+               {"deeper", nullptr}};
   const auto row = [&](const char* label, std::string value) {
     json["rows"].push_back({{"label", label}, {"value", std::move(value)}});
   };
@@ -139,7 +144,8 @@ Json json_of(const Studio::Outlook& outlook) {
   json["solid"] = {{"volume", solid.volume}, {"mass", solid.mass}, {"cost", solid.cost}};
   json["removed"] = range_of(estimate.removed);
   json["deeper"] = range_of(estimate.deeper);
-  row("Solid", fmt::format("{:.4g} cm3, {:.4g} g of {}", solid.volume / 1000, solid.mass, options.material.name));
+  row("Solid",
+      fmt::format("{:.4g} cm3, {:.4g} g of {}", solid.volume / 1000, solid.mass, options.material.name));
   row("Deeper than the wall", percents(estimate.deeper));
   if (estimate.removed.to <= 0) {
     row(options.modifiers ? "Modifiers" : "Removed", "nothing: no room is deep enough");
@@ -149,8 +155,7 @@ Json json_of(const Studio::Outlook& outlook) {
   if (options.modifiers) return json;
   row("Saves, about", fmt::format("{:.3g} to {:.3g} g of solid {}", estimate.removed.from * solid.mass,
                                   estimate.removed.to * solid.mass, options.material.name));
-  if (options.infill_is_known)
-    row("Filament", "what the print takes is predicted by the job itself");
+  if (options.infill_is_known) row("Filament", "what the print takes is predicted by the job itself");
   return json;
 }
 

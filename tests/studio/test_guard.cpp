@@ -30,9 +30,10 @@ TEST(ServedAt, IsCalledByItsAddressAndPort) {
   const ServedAt here{"127.0.0.1", 4321};
   for (const char* name : {"127.0.0.1:4321", "localhost:4321", "LocalHost:4321"})
     EXPECT_TRUE(here.is_called(name)) << name;
-  for (const char* name : {"", "127.0.0.1", "127.0.0.1:4322", "localhost", "evil.example:4321", "evil.example",
-                           "127.0.0.1.evil.example:4321", "127.0.0.2:4321", "localhost.:4321", "[::1]:4321",
-                           "127.0.0.1:4321:4321", ":4321", "127.0.0.1:04321", "user@127.0.0.1:4321"})
+  for (const char* name :
+       {"", "127.0.0.1", "127.0.0.1:4322", "localhost", "evil.example:4321", "evil.example",
+        "127.0.0.1.evil.example:4321", "127.0.0.2:4321", "localhost.:4321", "[::1]:4321",
+        "127.0.0.1:4321:4321", ":4321", "127.0.0.1:04321", "user@127.0.0.1:4321"})
     EXPECT_FALSE(here.is_called(name)) << name;
   EXPECT_EQ(here.origin(), "http://127.0.0.1:4321");
 }
@@ -73,7 +74,8 @@ TEST_F(GuardTest, RefusesWhoHasNot) {
   for (const char* path : {"/api/state", "/api/events", "/api/models/m1/scene", "/api/jobs/j1/report", "/api",
                            "/api/", "/nothing", "/studio.html"}) {
     RequestHead head = asking("GET", path);
-    for (const char* wrong : {"", "Bearer ", "Bearer secre", "Bearer secret2", "Basic secret", "secret", "bearer secret"}) {
+    for (const char* wrong :
+         {"", "Bearer ", "Bearer secre", "Bearer secret2", "Basic secret", "secret", "bearer secret"}) {
       head.authorization = wrong;
       EXPECT_EQ(status(head), 401) << path << " " << wrong;
     }

@@ -72,7 +72,8 @@ TEST_F(PrivateFolderTest, FilesAreNeverThoseOfSomebodyElse) {
   const test::TemporaryFolder elsewhere;
   const fs::path precious = elsewhere.write("precious", "x");
   fs::create_symlink(precious, parent_.path() / "open.html");
-  EXPECT_NE(test::message_of<FailureError>([&] { write_private_file(parent_.path() / "open.html", "y"); }), "");
+  EXPECT_NE(test::message_of<FailureError>([&] { write_private_file(parent_.path() / "open.html", "y"); }),
+            "");
   EXPECT_EQ(fs::file_size(precious), 1u);
 }
 

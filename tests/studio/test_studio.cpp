@@ -38,6 +38,24 @@ Refusal refusal_by(const std::function<void()>& act) {
   return {};
 }
 
+// Files can become no larger than this, which is told as a full disk is but for the word.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit little = before_;
+    little.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &little);
+  }
+  ~FullDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
 Mesh open_box() {
   Mesh mesh = test::make_box({0, 0, 0}, {30, 30, 30});
   mesh.triangles.resize(mesh.triangles.size() / 2);
@@ -106,19 +124,24 @@ TEST(StudioModels, AreCountedInBytesWhileTheyCome) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-// As a disk that is full, of which the system says another word.
 TEST(StudioModels, ForWhichThereIsNoRoomLeaveNothing) {
   StudioFolder folder;
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  ::getrlimit(RLIMIT_FSIZE, &before);
-  rlimit little = before;
-  little.rlim_cur = 4096;
-  ::setrlimit(RLIMIT_FSIZE, &little);
+  const FullDisk full(4096);
   const Refusal refusal = refusal_by([&] { folder.upload("large.stl", std::string(100'000, 'x')); });
-  ::setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(refusal.status, 507);
   EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(StudioJobs, ForWhichThereIsNoRoomLeaveNothing) {
+  StudioFolder folder;
+  folder.upload_block();
+  const FullDisk full(4096);
+  folder.studio().start_job("m1", {}, "{}");
+  const JobRecord job = folder.wait_for("j1");
+  EXPECT_EQ(job.state, JobState::failed);
+  EXPECT_EQ(job.error->status, 507);
+  EXPECT_EQ(job.error->exit, static_cast<int>(ExitCode::failure));
+  EXPECT_FALSE(fs::exists(folder.path() / "j1"));
 }
 
 TEST(StudioJobs, MakeWhatTheCommandLineMakes) {
@@ -270,11 +293,13 @@ TEST(StudioEstimate, CountsWhatIsDeeperThanTheWall) {
   const JobEstimate estimate = folder.studio().outlook("m1", {{"wall", {"3"}}}).estimate.value();
   EXPECT_NEAR(estimate.solid_volume, 27000, 0.1);
   EXPECT_NEAR(estimate.deeper.from, 0.512, 0.02);  // (24/30)^3
-  const JobEstimate inches =
-      folder.studio().outlook("m1", {{"wall", {"3"}}, {"unit", {"inch"}}, {"scale", {"0.5"}}}).estimate.value();
+  const JobEstimate inches = folder.studio()
+                                 .outlook("m1", {{"wall", {"3"}}, {"unit", {"inch"}}, {"scale", {"0.5"}}})
+                                 .estimate.value();
   EXPECT_NEAR(inches.solid_volume, 27000 * 12.7 * 12.7 * 12.7, 1e3);
   EXPECT_GT(inches.deeper.from, 0.9);
-  const JobEstimate uneven = folder.studio().outlook("m1", {{"wall", {"3"}}, {"scale", {"1,1,2"}}}).estimate.value();
+  const JobEstimate uneven =
+      folder.studio().outlook("m1", {{"wall", {"3"}}, {"scale", {"1,1,2"}}}).estimate.value();
   EXPECT_LT(uneven.deeper.from, 0.64 * 54 / 60);  // the share of such a box
   EXPECT_GT(uneven.deeper.to, 0.64 * 54 / 60 - 0.02);
 }

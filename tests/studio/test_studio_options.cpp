@@ -40,12 +40,13 @@ TEST_F(StudioOptions, AreAllButThoseOfFilesAndOfTheProgram) {
   std::set<std::string> left_out;
   visit_hollow_options([&](const CLI::Option& option) {
     const std::string name = option.get_lnames().empty() ? option.get_name() : option.get_lnames().front();
-    if (std::ranges::find(lent_.options, name, &OptionRow::name) == lent_.options.end()) left_out.insert(name);
+    if (std::ranges::find(lent_.options, name, &OptionRow::name) == lent_.options.end())
+      left_out.insert(name);
   });
   EXPECT_EQ(left_out,
-            (std::set<std::string>{"MODEL", "output", "help", "json", "threads", "quiet", "device", "view", "picture",
-                                   "picture-cut", "picture-size", "picture-colour", "spheres", "print-settings",
-                                   "plugs", "plug-clearance", "plug-taper"}));
+            (std::set<std::string>{"MODEL", "output", "help", "json", "threads", "quiet", "device", "view",
+                                   "picture", "picture-cut", "picture-size", "picture-colour", "spheres",
+                                   "print-settings", "plugs", "plug-clearance", "plug-taper"}));
   for (const OptionRow& each : lent_.options) EXPECT_FALSE(each.description.empty()) << each.name;
 }
 
@@ -66,14 +67,16 @@ TEST_F(StudioOptions, SayTheirKindUnitAndDefault) {
 }
 
 TEST_F(StudioOptions, NamesOfFilesAreRefused) {
-  for (const char* name : {"output", "o", "json", "view", "picture", "spheres", "print-settings", "plugs", "config",
-                           "threads", "help", "version", "wall=3 --spheres", "", "--wall"})
+  for (const char* name : {"output", "o", "json", "view", "picture", "spheres", "print-settings", "plugs",
+                           "config", "threads", "help", "version", "wall=3 --spheres", "", "--wall"})
     EXPECT_TRUE(contains(refusal({{name, {"/etc/passwd"}}}), "no such option")) << name;
   for (const char* process : {"/etc/passwd", "../x.json", "mine", "x.json", "list"})
     EXPECT_TRUE(contains(refusal({{"process", {process}}}), "unknown process")) << process;
   for (const char* region : {"/etc/passwd", "part.stl", "modifier", ""})
     EXPECT_FALSE(refusal({{"keep-solid", {region}}}).empty()) << region;
-  EXPECT_EQ(plan({{"keep-solid", {"sphere:0,0,0,5", "box:0,0,0,1,1,1"}}}).forms.front().options.keep_solid.size(), 2u);
+  EXPECT_EQ(
+      plan({{"keep-solid", {"sphere:0,0,0,5", "box:0,0,0,1,1,1"}}}).forms.front().options.keep_solid.size(),
+      2u);
 }
 
 TEST_F(StudioOptions, AValueIsNeverAnotherOption) {
