@@ -21,15 +21,16 @@ Vec3d r3_point(std::size_t i) {
   return {fraction(0.8191725133961645), fraction(0.6710436067037893), fraction(0.5497004779019703)};
 }
 
-// What voids took of what is deeper than the wall, in percent over models of many shapes: bench/bench_estimate has them.
+// What voids take of what is deeper than the wall: what they took of several models (bench/bench_estimate), and something to
+// either side. Channels and holes, which go through the wall, are the reason for more than all.
 struct Taken {
   bool is_of_cells, drains, has_roofs;
   ShareRange share;
 };
 constexpr Taken kTaken[] = {
-    {false, false, false, {0.35, 0.85}}, {false, false, true, {0.35, 0.85}}, {false, true, false, {0.3, 0.8}},
-    {false, true, true, {0.3, 0.8}},     {true, false, false, {0.6, 1}},     {true, false, true, {0.5, 0.95}},
-    {true, true, false, {0.6, 1.02}},       {true, true, true, {0.3, 0.9}},
+    {false, false, false, {0.35, 0.75}}, {false, false, true, {0.4, 0.8}}, {false, true, false, {0.35, 0.8}},
+    {false, true, true, {0.3, 0.6}},     {true, false, false, {0.8, 1}},   {true, false, true, {0.65, 0.95}},
+    {true, true, false, {0.75, 1.03}},   {true, true, true, {0.5, 0.9}},
 };
 
 ShareRange taken_by(const HollowOptions& options) {
@@ -38,7 +39,7 @@ ShareRange taken_by(const HollowOptions& options) {
     if (taken.is_of_cells == options.cells.has_value() && taken.drains == options.drainage.has_value() &&
         taken.has_roofs == has_roofs)
       return taken.share;
-  return {0, 1};
+  return {0, 1};  // there are all
 }
 
 double length_factor(const LoadOptions& load) {
@@ -93,19 +94,22 @@ JobEstimate estimate_job(const DepthSamples& samples, std::span<const JobForm> f
     const PackingLimits limits = form.options.packing.limits();
     const ShareRange deeper{share_deeper(samples, limits.wall / least),
                             share_deeper(samples, limits.wall / most)};
-    // Without room for the smallest void there is none.
-    const bool may_be_some = share_deeper(samples, (limits.wall + limits.min_radius) / most) > 0;
-    const bool is_sure = share_deeper(samples, (limits.wall + limits.min_radius) / least) > 0;
+    // Centres of the smallest voids lie so deep: where nothing is there is none, and where little is, as in slender parts, less.
+    const double centre = limits.wall + limits.min_radius;
+    const bool may_be_some = share_deeper(samples, centre / most) > 0;
     const ShareRange taken = taken_by(form.options);
     const bool is_limited = form.options.packing.stop.max_count != PackingStop{}.max_count ||
                             !form.options.keep_solid.empty() || form.options.stand;
-    const ShareRange removed{is_sure && !is_limited ? taken.from * deeper.from : 0,
+    const ShareRange removed{is_limited ? 0 : taken.from * share_deeper(samples, centre / least),
                              may_be_some ? taken.to * deeper.to : 0};
     if (is_first) estimate.deeper = deeper;
-    if (is_first || form.tried == FormTrial::always || form.tried == FormTrial::for_more_volume)
-      estimate.removed = is_first ? removed
-                                  : ShareRange{std::min(estimate.removed.from, removed.from),
-                                               std::max(estimate.removed.to, removed.to)};
+    if (is_first) {
+      estimate.removed = removed;
+    } else if (form.tried == FormTrial::always || form.tried == FormTrial::for_more_volume) {
+      // Of a print that is described the form is taken that needs the least filament, else that which removes most.
+      if (first.infill_is_known) estimate.removed.from = std::min(estimate.removed.from, removed.from);
+      estimate.removed.to = std::max(estimate.removed.to, removed.to);
+    }
     is_first = false;
   }
   estimate.removed = within_target(estimate.removed, first, estimate.solid_volume);
