@@ -22,7 +22,7 @@ class Estimates {
     window.clearTimeout(this.timer);
     this.asked?.abort();
     const model = page.models.find(({ id }) => id === page.chosen);
-    if (!model?.usable || connection !== 'open') return this.onAnswer(null, null);
+    if (!model || connection !== 'open') return this.onAnswer(null, null);
     this.timer = window.setTimeout(async () => {
       const asked = new AbortController();
       this.asked = asked;
@@ -56,15 +56,15 @@ export function showStart(into: HTMLElement, form: HTMLFormElement, session: Ses
     words.replaceChildren(...(refused ? [trouble(refused)] : []));
     const model = modelChosen(store.now);
     if (!model) words.replaceChildren(make('p', { class: 'note' }, 'Add a model, and what can be saved is estimated here.'));
-    else if (!model.usable) words.replaceChildren(make('p', { class: 'note' }, 'This model cannot be hollowed as it is; what is wrong is marked in it.'));
-    go.disabled = !model?.usable || refused !== null;
+    // Other refusals are not the job's own.
+    go.disabled = !model || store.now.connection !== 'open' || refused?.exit !== undefined;
   });
   let last: readonly unknown[] = [];
   store.listen((page) => {
     const now = [page.chosen, page.options, page.connection, modelChosen(page)];
     if (now.every((one, i) => one === last[i])) return;
     last = now;
-    go.disabled = page.connection !== 'open' || !modelChosen(page)?.usable;
+    go.disabled = page.connection !== 'open' || !modelChosen(page);
     into.setAttribute('aria-busy', 'true');
     estimates.want(page);
   });
