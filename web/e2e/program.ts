@@ -37,7 +37,8 @@ export class Program {
   }
 }
 
-// What the command line says of a file that it cannot use.
-export function saidOf(file: string): string {
-  return spawnSync(kProgram, ['hollow', file, '-o', `${file}.out.stl`], { encoding: 'utf8' }).stderr;
+// What the command line says of a file that it cannot use, in lines.
+export function saidOf(file: string): readonly string[] {
+  const { stderr } = spawnSync(kProgram, ['hollow', file, '-o', `${file}.out.stl`], { encoding: 'utf8' });
+  return stderr.trim().split('\n').map((line) => line.replace(/^aerate: (error|hint): /, ''));
 }

@@ -42,7 +42,8 @@ export class Api {
     let answer: Response;
     try {
       const headers = { ...request.headers, Authorization: `Bearer ${this.token}` };
-      answer = await fetch(`/api/${path}`, { ...request, headers });
+      // Else a browser lets one tab wait for what it gets for another, and a stream of events never ends.
+      answer = await fetch(`/api/${path}`, { ...request, headers, cache: 'no-store' });
     } catch (error) {
       throw isAbort(error) ? error : new Unreachable();
     }
