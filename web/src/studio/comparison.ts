@@ -11,7 +11,7 @@ export interface Column {
 export interface Row {
   readonly name: string;
   readonly cells: readonly string[];
-  readonly best: number | null; // the least, where that is what one wants
+  readonly best: readonly number[]; // which are the least, where that is what one wants
 }
 
 export interface Comparison {
@@ -37,13 +37,11 @@ export function filamentOf({ print }: Report): { readonly infill: number; readon
 
 const cubic = (mm3: number): string => `${format(mm3 / 1000, mm3 < 1e5 ? 2 : 1)} cm³`;
 
-function bestOf(values: readonly (number | null)[]): number | null {
-  let best: number | null = null;
-  values.forEach((value, i) => {
-    if (value !== null && (best === null || value < (values[best] ?? Infinity))) best = i;
-  });
+function bestOf(values: readonly (number | null)[]): readonly number[] {
   const known = values.filter((value) => value !== null);
-  return known.length > 1 && known.some((value) => value !== known[0]) ? best : null;
+  const least = Math.min(...known);
+  if (known.every((value) => value === least)) return [];
+  return [...values.keys()].filter((i) => values[i] === least);
 }
 
 function changeOf(value: number, first: number): string {
@@ -62,7 +60,7 @@ function measured(name: string, values: readonly (number | null)[], shown: (valu
 }
 
 function told(name: string, first: string, done: readonly Done[], tell: (one: Done) => string | null): Row {
-  return { name, cells: [first, ...done.map((one) => tell(one) ?? '–')], best: null };
+  return { name, cells: [first, ...done.map((one) => tell(one) ?? '–')], best: [] };
 }
 
 // Of one infill each, since others cannot be compared.

@@ -14,7 +14,7 @@ import type { Job, Model, Report } from './told';
 function tableOf({ columns, rows }: Comparison): HTMLElement {
   const head = [make('td'), ...columns.map(({ title }) => make('th', { scope: 'col' }, title))];
   const body = rows.map(({ name, cells, best }) =>
-    make('tr', {}, make('th', { scope: 'row' }, name), ...cells.map((cell, i) => make('td', best === i ? { class: 'best' } : {}, cell))),
+    make('tr', {}, make('th', { scope: 'row' }, name), ...cells.map((cell, i) => make('td', best.includes(i) ? { class: 'best' } : {}, cell))),
   );
   const caption = make('caption', {}, 'The least of a row is bold; changes are from the solid');
   return make('table', { class: 'comparison' }, caption, make('thead', {}, make('tr', {}, ...head)), make('tbody', {}, ...body));

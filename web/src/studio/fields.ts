@@ -58,6 +58,7 @@ function titleOf(name: string): string {
 export function fieldOf(row: OptionRow, process: Process | undefined): Field {
   const limit = process?.rows.find(({ option }) => option === row.name);
   const field = { row, title: titleOf(row.name), unit: row.unit || limit?.unit || '' };
+  if (row.name === 'drain' && process) return { ...field, standard: process.drains ? 'yes' : 'no', source: '' };
   if (!limit) return { ...field, standard: row.default ?? '', source: '' };
   return { ...field, standard: String(limit.value ?? 'none'), source: limit.source ?? '' };
 }

@@ -1,5 +1,6 @@
 // The form of a job's options: the process, what is asked first, and groups of the rest that open.
 import { make } from '../dom';
+import { raised } from '../figures';
 import { entryOf, fieldOf, groupsOf, kMain, valueOf, withValue, type Field } from './fields';
 import { onChange, type Page, type Store } from './store';
 import type { OptionRow, Options, Process, Told } from './told';
@@ -107,7 +108,7 @@ function processChoice(told: Told, set: Set): Entry {
           'tr',
           {},
           make('th', { scope: 'row' }, figure),
-          make('td', {}, value === null ? 'none' : `${value} ${unit}`.trim()),
+          make('td', {}, value === null ? 'none' : raised(`${value} ${unit}`.trim())),
           make('td', {}, source ?? ''),
         ),
       ),
@@ -119,7 +120,7 @@ function processChoice(told: Told, set: Set): Entry {
 const kWords: Readonly<Record<string, Readonly<Record<string, string>>>> = {
   as: { voids: 'Voids', modifiers: 'Modifiers' },
   shape: { '': 'As fits', spheres: 'Spheres', cells: 'Cells' },
-  drain: { '': 'As the process', true: 'Yes', false: 'No' },
+  drain: { '': 'Default', true: 'Yes', false: 'No' },
 };
 
 interface Control {
@@ -164,11 +165,15 @@ function buttons(row: OptionRow, field: Field, put: (entry: string) => void): Co
   const inputs = values.map((value) => {
     const element = make('input', { type: 'radio', name: `choice-${row.name}`, value });
     element.addEventListener('change', () => put(value === standard ? '' : value));
-    return { value, element, label: make('label', {}, element, make('span', {}, words[value] ?? value)) };
+    const text = make('span', {}, words[value] ?? value);
+    return { value, element, text, label: make('label', {}, element, text) };
   });
   const element = make('fieldset', {}, make('legend', {}, field.title), make('div', { class: 'choice' }, ...inputs.map(({ label }) => label)));
-  const show = (entry: string): void => {
-    for (const one of inputs) one.element.checked = one.value === (entry || standard);
+  const show = (entry: string, { standard: now }: Field): void => {
+    for (const one of inputs) {
+      one.element.checked = one.value === (entry || standard);
+      if (one.value === '' && now) one.text.textContent = `${words['']} (${now})`;
+    }
   };
   return { element, labelled: null, show };
 }
@@ -191,7 +196,7 @@ function select(row: OptionRow, put: (entry: string) => void): Control {
   element.append(first, ...values.map((value) => make('option', { value }, words[value] ?? value)));
   element.addEventListener('change', () => put(element.value));
   const show = (entry: string, { standard }: Field): void => {
-    first.textContent = standard ? `default (${standard})` : 'default';
+    first.textContent = standard ? `${standard} (default)` : 'default';
     element.value = entry;
   };
   return { element, labelled: id, show };

@@ -1,5 +1,6 @@
 // The estimate, the command line that does the same, and the button.
 import { make } from '../dom';
+import { raised } from '../figures';
 import { troubleOf, type Api } from './api';
 import { attempt, copyButton, trouble } from './pieces';
 import type { Session } from './session';
@@ -49,7 +50,7 @@ export function showStart(into: HTMLElement, form: HTMLFormElement, session: Ses
   const estimates = new Estimates(api, (estimate, refused) => {
     into.removeAttribute('aria-busy');
     rows.replaceChildren(
-      ...(estimate?.rows ?? []).map(({ label, value }) => make('div', {}, make('dt', {}, label), make('dd', {}, value))),
+      ...(estimate?.rows ?? []).map(({ label, value }) => make('div', {}, make('dt', {}, label), make('dd', {}, raised(value)))),
     );
     command.textContent = estimate?.command ?? '';
     line.hidden = !estimate;

@@ -24,6 +24,7 @@ export interface Process {
   readonly name: string;
   readonly title: string;
   readonly material: string;
+  readonly drains: boolean;
   readonly rows: readonly ProcessRow[];
 }
 

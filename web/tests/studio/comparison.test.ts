@@ -46,9 +46,9 @@ it('has a column for the solid and one for each job', () => {
 it('says what changed from the solid, and which is least', () => {
   const { rows } = compare(kModel, [done('j1', kReport), done('j2', kModifiers, { as: 'modifiers' })]);
   const row = (name: string) => rows.find((one) => one.name === name);
-  expect(row('Solid material')).toEqual({ name: 'Solid material', cells: ['20 cm³', '9 cm³ (−55 %)', '–'], best: 1 });
+  expect(row('Solid material')).toEqual({ name: 'Solid material', cells: ['20 cm³', '9 cm³ (−55 %)', '–'], best: [1] });
   // At one infill for all.
-  expect(row('Filament at 15 % infill')).toMatchObject({ cells: ['6 cm³', '9 cm³ (+50 %)', '4.2 cm³ (−30 %)'], best: 2 });
+  expect(row('Filament at 15 % infill')).toMatchObject({ cells: ['6 cm³', '9 cm³ (+50 %)', '4.2 cm³ (−30 %)'], best: [2] });
   expect(row('Filament at 100 % infill')).toBeUndefined();
   expect(row('Mass, PLA, printed solid')?.cells).toEqual(['24.8 g', '11.2 g (−55 %)', '–']);
   expect(row('Of other infill')?.cells).toEqual(['–', '–', '60 % at 0 %']);
@@ -64,6 +64,13 @@ it('compares nothing that is of another infill or material', () => {
   expect(cells('Filament at 15 % infill')).toEqual(['6 cm³', '9 cm³ (+50 %)', '–']);
   expect(cells('Filament at 40 % infill')).toEqual(['9 cm³', '–', '8 cm³ (−11.1 %)']);
   expect(cells('Mass, PLA, printed solid')).toEqual(['24.8 g', '11.2 g (−55 %)', '–']);
+});
+
+it('marks all that are least, and none where all are the same', () => {
+  const { rows } = compare(kModel, [done('j1', kReport), done('j2', kReport)]);
+  expect(rows.find(({ name }) => name === 'Solid material')?.best).toEqual([1, 2]);
+  const same = { ...kReport, volume: { before_mm3: 20000, after_mm3: 20000 } };
+  expect(compare(kModel, [done('j1', same)]).rows[0].best).toEqual([]);
 });
 
 it('leaves out what nobody knows', () => {

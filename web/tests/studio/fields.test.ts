@@ -16,6 +16,7 @@ const kProcess: Process = {
   name: 'sla',
   title: 'resin printers',
   material: 'resin',
+  drains: true,
   rows: [
     { option: 'wall', name: 'wall', value: 2, unit: 'mm', source: 'a guide' },
     { option: 'bridge', name: 'bridge', value: null, unit: 'mm', source: null },
@@ -28,6 +29,7 @@ it('takes what holds by default from the process, with its source, before what t
   expect(fieldOf(wall, kProcess)).toMatchObject({ title: 'Wall', standard: '2', unit: 'mm', source: 'a guide' });
   expect(fieldOf(wall, undefined)).toMatchObject({ standard: '1.2', source: '' });
   expect(fieldOf(row('bridge', 'number'), kProcess).standard).toBe('none');
+  expect(fieldOf(row('drain', 'flag', { off: true }), kProcess).standard).toBe('yes');
   expect(fieldOf(row('some-new-thing', 'text'), kProcess)).toMatchObject({ title: 'Some new thing', standard: '' });
 });
 
