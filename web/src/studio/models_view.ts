@@ -12,6 +12,9 @@ export function sizeOf({ report: { input } }: Model): string {
   return `${upper.map((high, k) => format(high - lower[k], 1)).join(' × ')} mm`;
 }
 
+// What the command line says, after the word for what can be done with it: "none: ...".
+export const whyUnusable = ({ use }: Model): string => use.replace(/^none: /, '');
+
 export function showModels(into: HTMLElement, session: Session): void {
   const { store } = session;
   const chooser = make('input', { type: 'file', id: 'chooser', multiple: '', hidden: '', tabindex: '-1', 'aria-label': 'Models' });
@@ -54,16 +57,15 @@ function entry(model: Model, { chosen }: Page, session: Session): HTMLElement {
     'button',
     { type: 'button', class: 'model', 'aria-pressed': String(isChosen), 'data-model': model.id },
     make('strong', {}, model.name),
-    make('span', { class: 'note' }, `${sizeOf(model)}, ${format(input.triangles)} triangles, ${bytesIn(model.bytes)}`),
+    make('span', { class: 'note' }, `${sizeOf(model)}, ${format(input.triangles)} triangles`),
   );
   choose.addEventListener('click', () => session.choose(model.id));
   const remove = button('×', () => session.removeModel(model.id), `Remove ${model.name}`);
   remove.classList.add('small');
   const item = make('li', { class: isChosen ? 'chosen-model' : '' }, choose, remove);
   if (isChosen || !model.usable) {
-    // Of what cannot be used, exactly what the command line says.
-    const use = model.usable ? model.use.replace(/^'aerate hollow'/, 'hollowing') : model.use;
-    item.append(make('p', { class: model.usable ? 'note use' : 'use bad' }, sentence(use)));
+    const use = model.usable ? model.use.replace(/^'aerate hollow'/, 'hollowing') : whyUnusable(model);
+    item.append(make('p', { class: `note use ${model.usable ? '' : 'bad'}` }, sentence(use)));
   }
   return item;
 }
