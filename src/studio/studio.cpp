@@ -33,6 +33,12 @@ Refused unknown(const char* what, const std::string& id) {
   return Refused({404, fmt::format("there is no {} {:.40}", what, id), "it may have been removed"});
 }
 
+// Whether a job is asked for more than is done to a model unasked, so that it may use one that could not be used.
+bool may_mend(const HollowOptions& options) {
+  const bool is_as_read = !options.load.unit && options.load.scale == Vec3d{1, 1, 1};
+  return options.surface != SurfaceMode::automatic || options.max_hole || options.weld || !is_as_read;
+}
+
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
@@ -267,16 +273,18 @@ KeptFile Studio::scene_of_model(const std::string& id) const {
 
 Studio::Outlook Studio::outlook(const std::string& id, const std::vector<GivenOption>& options) const {
   PlanRequest request;
+  ModelRecord of;
   std::shared_ptr<const DepthSamples> depths;
   {
     const std::lock_guard lock(mutex_);
     const Model& found = model(id);
-    if (!found.record.is_usable)
-      throw Refused({422, found.record.use, "", static_cast<int>(ExitCode::unusable_mesh)});
-    request = {found.file, found.record.name, folder_ / kResultStem, options};
+    of = found.record;
+    request = {found.file, of.name, folder_ / kResultStem, options};
     depths = found.depths;
   }
   Outlook outlook{lent_.plan(request), std::nullopt};
+  if (!of.is_usable && !may_mend(outlook.plan.forms.front().options))
+    throw Refused({422, of.use, "", static_cast<int>(ExitCode::unusable_mesh)});
   if (depths) outlook.estimate = estimate_job(*depths, outlook.plan.forms);
   return outlook;
 }

@@ -95,6 +95,8 @@ TEST(StudioModels, ThatCannotBeUsedAreShownWithWhatIsWrong) {
   EXPECT_TRUE(fs::exists(folder.studio().scene_of_model(model.id).path));
   const Refusal refusal = refusal_by([&] { folder.studio().outlook(model.id, {}); });
   EXPECT_EQ(refusal.exit, static_cast<int>(ExitCode::unusable_mesh));
+  // Options may make it usable.
+  EXPECT_FALSE(folder.studio().outlook(model.id, {{"surface", {"remesh"}}, {"max-hole", {"60"}}}).estimate);
   folder.studio().start_job(model.id, {}, "{}");
   const JobRecord job = folder.wait_for("j1");
   EXPECT_EQ(job.state, JobState::failed);
