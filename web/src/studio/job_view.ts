@@ -1,5 +1,6 @@
 // A job: how far it is, or what came of it.
 import { make } from '../dom';
+import { raised } from '../figures';
 import { button, copyButton, download, trouble } from './pieces';
 import { isEnded, type Session } from './session';
 import type { Slot } from './slot';
@@ -42,7 +43,7 @@ function progress(session: Session, id: string): Part {
 function notices(job: Job): HTMLElement[] {
   const told = [...new Set(job.notices ?? [])];
   if (told.length === 0) return [];
-  return [make('ul', { class: 'notices', 'aria-label': 'Notices' }, ...told.map((notice) => make('li', {}, sentence(notice))))];
+  return [make('ul', { class: 'notices', 'aria-label': 'Notices' }, ...told.map((notice) => make('li', {}, raised(sentence(notice)))))];
 }
 
 function downloads(session: Session, job: Job): HTMLElement {

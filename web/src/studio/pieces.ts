@@ -1,5 +1,6 @@
 // What several parts of the page are made of.
 import { make } from '../dom';
+import { raised } from '../figures';
 import { troubleOf } from './api';
 import type { Trouble } from './told';
 import { sentence } from './words';
@@ -22,8 +23,10 @@ export async function attempt(act: () => unknown, beside: HTMLElement): Promise<
 }
 
 export function trouble({ what, hint }: Trouble): HTMLElement {
-  const box = make('div', { class: 'trouble', role: 'alert' }, make('p', {}, sentence(what)));
-  if (hint) box.append(make('p', { class: 'hint' }, sentence(hint)));
+  const box = make('div', { class: 'trouble', role: 'alert' }, make('p', {}, raised(sentence(what))));
+  // What that help says stands here too.
+  const told = hint?.replace("see 'aerate hollow --help'", 'the "?" beside each field tells what it takes');
+  if (told) box.append(make('p', { class: 'hint' }, raised(sentence(told))));
   return box;
 }
 

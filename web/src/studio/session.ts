@@ -56,7 +56,7 @@ export class Session {
 
   // A page that is loaded again shows what was done last.
   private goOn(jobs: readonly Job[]): void {
-    const last = jobs.at(-1);
+    const last = jobs.filter(({ model }) => this.store.now.models.some(({ id }) => id === model)).at(-1);
     if (last) this.store.set({ chosen: last.model, shown: { kind: 'job', id: last.id }, options: last.options });
   }
 
@@ -181,8 +181,10 @@ export class Session {
   }
 
   async removeModel(id: string): Promise<void> {
-    await this.api.remove('models', id);
+    await this.api.remove('models', id); // refused while a job needs it
     this.forget(id);
+    // The program would keep what was made of it.
+    for (const job of this.store.now.jobs.filter(({ model }) => model === id)) await this.removeJob(job.id);
   }
 }
 

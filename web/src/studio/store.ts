@@ -64,8 +64,10 @@ export const modelChosen = ({ models, chosen }: Page): Model | null => models.fi
 
 export const jobsOf = ({ jobs, chosen }: Page): readonly Job[] => jobs.filter(({ model }) => model === chosen);
 
-export const jobShown = ({ jobs, shown }: Page): Job | null =>
-  shown.kind === 'job' ? (jobs.find(({ id }) => id === shown.id) ?? null) : null;
+export const jobShown = (page: Page): Job | null => {
+  const { shown } = page;
+  return shown.kind === 'job' ? (jobsOf(page).find(({ id }) => id === shown.id) ?? null) : null;
+};
 
 // A listener that acts only when what it looks at has changed.
 export function onChange<T>(key: (page: Page) => T, act: (page: Page) => void): (page: Page) => void {
