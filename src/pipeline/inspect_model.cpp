@@ -27,7 +27,7 @@ InspectedModel look_at(const InspectOptions& options, bool is_shown, JobLog& log
   }
   if (is_shown) inspected.mesh = model.mesh;
   ModelUse use = use_of(std::move(model), {.mode = SurfaceMode::automatic, .weld = options.weld});
-  inspected.is_usable = use.is_usable;
+  inspected.refusal = std::move(use.refusal);
   report.use = std::move(use.words);
   return inspected;
 }

@@ -30,7 +30,7 @@ InspectReport inspect_model(const InspectOptions& options, Monitor& monitor);
 struct InspectedModel {
   InspectReport report;
   Mesh mesh;               // as it was read
-  bool is_usable = false;  // hollowing will make something of it
+  std::optional<Error> refusal;  // what hollowing would throw
 };
 
 // The same for who shows it; `options.views` are not made.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/kept_solid.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
@@ -57,8 +58,8 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
 
 // What hollowing will make of a model: whether its surface can be kept, or what stands in the way.
 struct ModelUse {
-  bool is_usable = false;
   std::string words;
+  std::optional<Error> refusal = {};  // what hollowing would throw
 };
 ModelUse use_of(PreparedModel model, const SurfacePolicy& policy);
 

@@ -19,6 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kPrefix = "aerate-studio-";
+// A folder of that name without this file is somebody else's, or on its way.
+constexpr const char* kMark = "of-aerate-studio";
 
 FailureError cannot(const char* what, const fs::path& path) {
   return FailureError(
@@ -36,7 +38,8 @@ void remove_left_over(const fs::path& parent) {
       continue;
     const int folder = ::open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (folder < 0) continue;
-    if (::flock(folder, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry.path(), error);
+    const bool is_own = ::faccessat(folder, kMark, F_OK, AT_SYMLINK_NOFOLLOW) == 0;
+    if (is_own && ::flock(folder, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry.path(), error);
     ::close(folder);
   }
 }
@@ -59,6 +62,7 @@ PrivateFolder::PrivateFolder() {
     fs::remove_all(path_, error);
     throw failure;
   }
+  write_private_file(path_ / kMark, "");
 }
 
 PrivateFolder::~PrivateFolder() {

@@ -26,7 +26,7 @@ struct ModelRecord {
   std::string name;  // as the user calls it
   std::uint64_t bytes = 0;
   std::string inspection = {};  // JSON, as 'aerate inspect --json' writes it
-  bool is_usable = false;
+  std::optional<Refusal> refusal = {};  // why it cannot be used, if so
   std::string use = {};
 };
 

@@ -228,10 +228,11 @@ ModelRecord Studio::take(std::unique_ptr<Upload> upload) {
       write_bytes(page_bytes(scene_of(inspected.mesh, report), "aerate " AERATE_VERSION),
                   fs::path(upload->folder_.path() / kSceneFile));
       made->record.inspection = lent_.inspection_json(report);
-      made->record.is_usable = inspected.is_usable;
+      if (const auto& refusal = inspected.refusal)
+        made->record.refusal = Refusal{422, shown.in(refusal->what()), shown.in(refusal->hint()), static_cast<int>(refusal->code())};
       made->record.use = report.use;
       const Inspection& inspection = report.input.inspection;
-      if (inspected.is_usable && inspection.closed())
+      if (!inspected.refusal && inspection.closed())
         made->depths =
             std::make_shared<DepthSamples>(sample_depths(inspected.mesh, std::abs(inspection.filled_volume)));
     });
@@ -283,8 +284,7 @@ Studio::Outlook Studio::outlook(const std::string& id, const std::vector<GivenOp
     depths = found.depths;
   }
   Outlook outlook{lent_.plan(request), std::nullopt};
-  if (!of.is_usable && !may_mend(outlook.plan.forms.front().options))
-    throw Refused({422, of.use, "", static_cast<int>(ExitCode::unusable_mesh)});
+  if (of.refusal && !may_mend(outlook.plan.forms.front().options)) throw Refused(*of.refusal);
   if (depths) outlook.estimate = estimate_job(*depths, outlook.plan.forms);
   return outlook;
 }

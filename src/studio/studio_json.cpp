@@ -95,7 +95,7 @@ GivenOption option_of(const std::string& name, const Json& value) {
 
 Json json_of(const ModelRecord& model) {
   return {{"id", model.id},       {"name", model.name},
-          {"bytes", model.bytes}, {"usable", model.is_usable},
+          {"bytes", model.bytes}, {"usable", !model.refusal},
           {"use", model.use},     {"report", Json::parse(model.inspection)}};
 }
 

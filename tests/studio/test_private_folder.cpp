@@ -53,12 +53,16 @@ TEST_F(PrivateFolderTest, OfEarlierRunsAreRemovedUnlessTheyGoOn) {
   const fs::path left = parent_.path() / "aerate-studio-abcdef";
   fs::create_directory(left);
   std::ofstream(left / "model.stl") << "x";
+  std::ofstream(left / "of-aerate-studio") << "";
+  const fs::path another = parent_.path() / "aerate-studio-another";  // somebody else's
+  fs::create_directory(another);
   const fs::path link = parent_.path() / "aerate-studio-link";
   const test::TemporaryFolder elsewhere;
   const fs::path precious = elsewhere.write("precious", "x");
   fs::create_directory_symlink(elsewhere.path(), link);
   const PrivateFolder next;
   EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(another));
   EXPECT_TRUE(fs::exists(running.path()));
   EXPECT_TRUE(fs::exists(precious));
 }

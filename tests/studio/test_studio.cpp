@@ -66,7 +66,7 @@ TEST(StudioModels, AreInspectedUnderTheirNames) {
   StudioFolder folder;
   const ModelRecord model = folder.upload_block();
   EXPECT_EQ(model.id, "m1");
-  EXPECT_TRUE(model.is_usable);
+  EXPECT_FALSE(model.refusal);
   const Json report = Json::parse(model.inspection);
   EXPECT_EQ(report["input"]["path"], "block.stl");
   EXPECT_EQ(report["input"]["triangles"], 12);
@@ -89,12 +89,15 @@ TEST(StudioModels, ThatCannotBeReadAreRefusedAndLeaveNothing) {
 TEST(StudioModels, ThatCannotBeUsedAreShownWithWhatIsWrong) {
   StudioFolder folder;
   const ModelRecord model = folder.upload("open.stl", test::to_binary_stl(open_box()));
-  EXPECT_FALSE(model.is_usable);
+  ASSERT_TRUE(model.refusal);
+  EXPECT_EQ(model.refusal->exit, 4);
   EXPECT_TRUE(contains(model.use, "open.stl"));
   EXPECT_EQ(model.use.find(folder.path().string()), std::string::npos) << model.use;
   EXPECT_TRUE(fs::exists(folder.studio().scene_of_model(model.id).path));
   const Refusal refusal = refusal_by([&] { folder.studio().outlook(model.id, {}); });
   EXPECT_EQ(refusal.exit, static_cast<int>(ExitCode::unusable_mesh));
+  EXPECT_TRUE(refusal.what.starts_with("open.stl: ")) << refusal.what;
+  EXPECT_NE(refusal.hint, "");
   // Options may make it usable.
   EXPECT_FALSE(folder.studio().outlook(model.id, {{"surface", {"remesh"}}, {"max-hole", {"60"}}}).estimate);
   folder.studio().start_job(model.id, {}, "{}");
