@@ -105,7 +105,7 @@ std::optional<OptionRow> row_of_option(const CLI::Option& option) {
                 .description = option.get_description(),
                 .group = group_of(name, option)};
   if (!option.get_default_str().empty()) row.default_value = option.get_default_str();
-  row.may_be_off = option.get_fnames().size() > 0;
+  row.may_be_off = !option.get_fnames().empty();
   row.may_be_bare = type.name.starts_with("[=");
   if (name == "process")
     for (const Process& process : processes()) row.choices.push_back(process.name);
@@ -153,7 +153,7 @@ void require_no_file(const OptionRow& row, const std::string& value) {
 
 // An option as it is written on a command line. A value cannot be taken for another option.
 void add_arguments(std::vector<std::string>& arguments, const OptionRow& row, const GivenOption& given) {
-  const std::string option = "--" + row.name;
+  const std::string option = fmt::format("--{}", row.name);
   if (given.is_off && !row.may_be_off) throw UsageError(option + " cannot be turned off", "leave it out");
   const bool is_bare = given.values.empty();
   if (is_bare && row.kind != OptionKind::flag && !row.may_be_bare)
@@ -161,10 +161,10 @@ void add_arguments(std::vector<std::string>& arguments, const OptionRow& row, co
   if (!is_bare && row.kind == OptionKind::flag) throw UsageError(option + " takes no value", "send true");
   if (given.values.size() > 1 && row.kind != OptionKind::list)
     throw UsageError(option + " is given more than once", "send one value");
-  if (is_bare) arguments.push_back(given.is_off ? "--no-" + row.name : option);
+  if (is_bare) arguments.push_back(given.is_off ? fmt::format("--no-{}", row.name) : option);
   for (const std::string& value : given.values) {
     require_no_file(row, value);
-    arguments.push_back(option + "=" + value);
+    arguments.push_back(fmt::format("{}={}", option, value));
   }
 }
 
