@@ -44,6 +44,15 @@ bool is_address(const std::string& host) {
          ::inet_pton(AF_INET6, host.c_str(), &address) == 1;
 }
 
+// As browsers write it: "0::1" -> "::1". An address.
+std::string shortest(const std::string& host) {
+  char text[INET6_ADDRSTRLEN] = "";
+  in6_addr address{};
+  const int family = ::inet_pton(AF_INET6, host.c_str(), &address) == 1 ? AF_INET6 : AF_INET;
+  if (family == AF_INET) ::inet_pton(AF_INET, host.c_str(), &address);
+  return ::inet_ntop(family, &address, text, sizeof text);
+}
+
 bool is_of_this_machine(const std::string& host) {
   return host.starts_with("127.") || host == "::1";
 }
@@ -124,6 +133,14 @@ void load(studio::Studio& studio, const fs::path& path) {
   }
 }
 
+void open_if_possible(const std::string& program, const std::string& address, const fs::path& folder) {
+  try {
+    open_browser(program, page_that_leads_to(address, folder));
+  } catch (const FailureError& error) {
+    print_note(fmt::format("no browser is opened: {}", error.what()));
+  }
+}
+
 struct StudioCommand {
   explicit StudioCommand(CLI::App& command) {
     command.add_option("MODEL", models, "Models that are there from the start: " + names_that_are_read())
@@ -171,19 +188,20 @@ struct StudioCommand {
     const std::optional<int> most_threads =
         threads ? std::optional(static_cast<int>(*threads)) : std::nullopt;
     studio::Studio studio(lent_to_studio(), bounds, folder, most_threads);
-    const studio::HttpServer server(studio, host, port ? static_cast<int>(*port) : 0, studio::random_token());
+    const std::string at = shortest(host);
+    const studio::HttpServer server(studio, at, port ? static_cast<int>(*port) : 0, studio::random_token());
     for (const std::string& model : models) load(studio, model);
     const std::string address = server.address();
-    if (!is_of_this_machine(host))
+    if (!is_of_this_machine(at))
       print_note(
           fmt::format("others than this machine can reach {}: what is sent there is not encrypted, so who "
                       "listens in that network sees the models and the token",
-                      host));
+                      at));
     std::cout << address << "\n";
     require_stdout_written();
     print_note("the studio runs until Ctrl-C; nothing is kept then");
     const auto program = no_browser ? std::nullopt : browser();
-    if (program) open_browser(*program, page_that_leads_to(address, folder));
+    if (program) open_if_possible(*program, address, folder);
     while (!interrupt.interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 

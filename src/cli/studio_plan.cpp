@@ -34,6 +34,10 @@ constexpr std::array<std::string_view, 9> kNotOffered{"help",           "device"
 
 constexpr std::string_view kFile = "FILE";
 
+constexpr const char* kRegions =
+    "Bodies that stay solid, and a wall round them: box:x0,y0,z0,x1,y1,z1, sphere:x,y,z,r or "
+    "cylinder:x0,y0,z0,x1,y1,z1,r, in mm";
+
 struct Group {
   std::string_view name;
   std::vector<std::string_view> options;
@@ -105,7 +109,8 @@ std::optional<OptionRow> row_of_option(const CLI::Option& option) {
                 .description = option.get_description(),
                 .group = group_of(name, option)};
   if (!option.get_default_str().empty()) row.default_value = option.get_default_str();
-  row.may_be_off = !option.get_fnames().empty();
+  row.may_be_off = std::ranges::any_of(option.get_fnames(),
+                                       [](const std::string& each) { return each.starts_with("no-"); });
   row.may_be_bare = type.name.starts_with("[=");
   if (name == "process")
     for (const Process& process : processes()) row.choices.push_back(process.name);
@@ -119,6 +124,7 @@ std::optional<OptionRow> row_of_option(const CLI::Option& option) {
   else if (unit)
     row.kind = OptionKind::number;
   row.unit = unit.value_or("");
+  if (name == "keep-solid") row.description = kRegions;
   if (row.kind == OptionKind::flag) row.default_value.reset();
   return row;
 }

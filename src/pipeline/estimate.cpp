@@ -98,8 +98,10 @@ JobEstimate estimate_job(const DepthSamples& samples, std::span<const JobForm> f
     const double centre = limits.wall + limits.min_radius;
     const bool may_be_some = share_deeper(samples, centre / most) > 0;
     const ShareRange taken = taken_by(form.options);
-    const bool is_limited = form.options.packing.stop.max_count != PackingStop{}.max_count ||
-                            !form.options.keep_solid.empty() || form.options.stand;
+    const PackingStop& stop = form.options.packing.stop;
+    const bool is_limited = stop.max_count != PackingStop{}.max_count || stop.target_density < 1 ||
+                            form.options.packing.method->on_lattice || !form.options.keep_solid.empty() ||
+                            form.options.stand;
     const ShareRange removed{is_limited ? 0 : taken.from * share_deeper(samples, centre / least),
                              may_be_some ? taken.to * deeper.to : 0};
     if (is_first) estimate.deeper = deeper;

@@ -29,7 +29,7 @@ InspectReport inspect_model(const InspectOptions& options, Monitor& monitor);
 // A model that was looked at, with what there is to see of it.
 struct InspectedModel {
   InspectReport report;
-  Mesh mesh;               // as it was read
+  Mesh mesh;                     // as it was read
   std::optional<Error> refusal;  // what hollowing would throw
 };
 

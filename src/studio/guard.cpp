@@ -51,7 +51,11 @@ std::optional<Refusal> refusal_of_body(const RequestHead& head, std::uint64_t mo
     return Refusal{415, "compressed bodies are not taken", "send the file as it is"};
   if (head.content_type && lowered(*head.content_type).starts_with("multipart/"))
     return Refusal{415, "bodies of several parts are not taken", "send the file itself as the body"};
-  if (!head.content_length) return std::nullopt;
+  // What comes in chunks could be lengthened without end by what is round them.
+  if (head.has_transfer_encoding || !head.content_length) {
+    if (head.method != "POST" && !head.has_transfer_encoding) return std::nullopt;
+    return Refusal{411, "the body does not say how long it is", "send Content-Length"};
+  }
   const auto length = parse_length(*head.content_length);
   if (!length) return Refusal{400, "the length of the body is no number", ""};
   const std::uint64_t most = is_upload(head.path) ? most_of_model : kMostRequestBytes;

@@ -33,6 +33,7 @@ struct RequestHead {
   std::string method, path;
   std::optional<std::string> host = {}, origin = {}, fetch_site = {}, authorization = {}, content_type = {},
                              content_encoding = {}, content_length = {};
+  bool has_transfer_encoding = false;
 };
 
 struct Guard {

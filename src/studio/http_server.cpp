@@ -166,7 +166,8 @@ RequestHead head_of(const httplib::Request& request) {
           header(request, "Authorization"),
           header(request, "Content-Type"),
           header(request, "Content-Encoding"),
-          header(request, "Content-Length")};
+          header(request, "Content-Length"),
+          request.has_header("Transfer-Encoding")};
 }
 
 httplib::Headers headers_of_all() {

@@ -28,13 +28,25 @@ std::size_t length_of_character(std::string_view text) {
   return length;
 }
 
+// What shows nothing, or turns what follows: controls beyond ASCII (U+0080 to U+009F) and of direction.
+bool is_hidden(std::string_view character) {
+  if (character.size() == 2) return character[0] == '\xc2' && static_cast<unsigned char>(character[1]) < 0xa0;
+  if (character.size() != 3 || character[0] != '\xe2') return false;
+  const auto second = static_cast<unsigned char>(character[1]),
+             third = static_cast<unsigned char>(character[2]);
+  const bool is_mark = second == 0x80 && (third == 0x8e || third == 0x8f);        // U+200E, U+200F
+  const bool is_line_or_turn = second == 0x80 && third >= 0xa8 && third <= 0xae;  // U+2028 to U+202E
+  const bool is_isolate = second == 0x81 && third >= 0xa6 && third <= 0xa9;       // U+2066 to U+2069
+  return is_mark || is_line_or_turn || is_isolate;
+}
+
 // Whole characters, as many as there is room for; what is no character becomes '_'.
 std::string characters_of(std::string_view text, std::size_t most) {
   std::string characters;
   while (!text.empty() && characters.size() < most) {
     const std::size_t length = length_of_character(text);
     const bool is_control = length == 1 && (text[0] < ' ' || text[0] == 0x7f);
-    if (length == 0 || is_control) {
+    if (length == 0 || is_control || is_hidden(text.substr(0, length))) {
       characters += '_';
     } else {
       characters += text.substr(0, length);

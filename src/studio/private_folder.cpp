@@ -28,6 +28,14 @@ FailureError cannot(const char* what, const fs::path& path) {
       "TMPDIR names the folder for temporary files");
 }
 
+// Its mark last, so that what a kill leaves of it is known by the next run.
+void remove_folder(const fs::path& path) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+    if (entry.path().filename() != kMark) fs::remove_all(entry.path(), error);
+  fs::remove_all(path, error);
+}
+
 // Folders of this kind that nobody holds.
 void remove_left_over(const fs::path& parent) {
   std::error_code error;
@@ -39,7 +47,7 @@ void remove_left_over(const fs::path& parent) {
     const int folder = ::open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (folder < 0) continue;
     const bool is_own = ::faccessat(folder, kMark, F_OK, AT_SYMLINK_NOFOLLOW) == 0;
-    if (is_own && ::flock(folder, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry.path(), error);
+    if (is_own && ::flock(folder, LOCK_EX | LOCK_NB) == 0) remove_folder(entry.path());
     ::close(folder);
   }
 }
@@ -66,8 +74,7 @@ PrivateFolder::PrivateFolder() {
 }
 
 PrivateFolder::~PrivateFolder() {
-  std::error_code error;
-  fs::remove_all(path_, error);
+  remove_folder(path_);
   ::close(lock_);
 }
 

@@ -25,7 +25,7 @@ struct ModelRecord {
   std::string id;    // "m1"
   std::string name;  // as the user calls it
   std::uint64_t bytes = 0;
-  std::string inspection = {};  // JSON, as 'aerate inspect --json' writes it
+  std::string inspection = {};          // JSON, as 'aerate inspect --json' writes it
   std::optional<Refusal> refusal = {};  // why it cannot be used, if so
   std::string use = {};
 };

@@ -72,6 +72,19 @@ struct Studio::Job {
   }
 };
 
+// Of an inspection, which ends with the studio.
+class Studio::EndMonitor final : public Monitor {
+ public:
+  explicit EndMonitor(const Studio& studio) : studio_(studio) {}
+  void check_interrupted() override {
+    const std::lock_guard lock(studio_.mutex_);
+    if (studio_.is_ending_) throw InterruptedError();
+  }
+
+ private:
+  const Studio& studio_;
+};
+
 // Tells a job's record what the job is doing.
 class Studio::JobMonitor final : public Monitor {
  public:
@@ -154,11 +167,21 @@ Upload::Upload(std::string id, std::string name, const fs::path& parent, std::ui
       ticket_(std::move(ticket)) {}
 
 void Upload::write(std::string_view bytes) {
+  ShownPaths shown;
+  shown.add(path_, name_);
   if (bytes.size() > most_bytes_ - bytes_)
     throw Refused({413, fmt::format("{}: the file is larger than {}", name_, in_megabytes(most_bytes_)),
                    "start 'aerate studio' with a larger --max-upload"});
   bytes_ += bytes.size();
-  file_->write(bytes);
+  try {
+    file_->write(bytes);
+  } catch (const FailureError&) {
+    Refusal refusal = refusal_of(std::current_exception());
+    refusal.what = shown.in(std::move(refusal.what));
+    if (refusal.hint.empty())
+      refusal.hint = "TMPDIR names the folder for temporary files; give one with more room";
+    throw Refused(std::move(refusal));
+  }
 }
 
 Studio::Studio(Lent lent, Bounds bounds, fs::path folder, std::optional<int> threads)
@@ -219,7 +242,7 @@ ModelRecord Studio::take(std::unique_ptr<Upload> upload) {
       InspectOptions options;
       options.model = made->file;
       options.load.volume_lists = volume_lists();
-      Monitor monitor;
+      EndMonitor monitor(*this);
       InspectedModel inspected = inspect_to_show(options, monitor);
       InspectReport& report = inspected.report;
       report.input.path = upload->name_;
@@ -229,7 +252,8 @@ ModelRecord Studio::take(std::unique_ptr<Upload> upload) {
                   fs::path(upload->folder_.path() / kSceneFile));
       made->record.inspection = lent_.inspection_json(report);
       if (const auto& refusal = inspected.refusal)
-        made->record.refusal = Refusal{422, shown.in(refusal->what()), shown.in(refusal->hint()), static_cast<int>(refusal->code())};
+        made->record.refusal = Refusal{422, shown.in(refusal->what()), shown.in(refusal->hint()),
+                                       static_cast<int>(refusal->code())};
       made->record.use = report.use;
       const Inspection& inspection = report.input.inspection;
       if (!inspected.refusal && inspection.closed())
@@ -255,6 +279,9 @@ void Studio::remove_model(const std::string& id) {
   for (const auto& each : jobs_)
     if (each->record.model == id && !has_ended(each->record.state))
       throw Refused({409, fmt::format("job {} needs this model", each->record.id), "stop it first"});
+  for (const auto& each : jobs_)
+    if (each->record.model == id) tell_removed(each->record.id);
+  std::erase_if(jobs_, [&](const auto& each) { return each->record.model == id; });
   std::erase_if(models_, [&](const auto& each) { return each->record.id == id; });
   tell_removed(id);
 }

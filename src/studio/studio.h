@@ -62,6 +62,7 @@ class Studio {
   std::unique_ptr<Upload> begin_upload(std::string_view name);
   // Inspects what came. Throws what load_model throws.
   ModelRecord take(std::unique_ptr<Upload> upload);
+  // With its jobs that have ended; throws Refused (409) while another needs it.
   void remove_model(const std::string& id);
   KeptFile scene_of_model(const std::string& id) const;
 
@@ -94,6 +95,7 @@ class Studio {
   struct Model;
   struct Job;
   class JobMonitor;
+  class EndMonitor;
 
   const Model& model(const std::string& id) const;
   Job& job(const std::string& id) const;

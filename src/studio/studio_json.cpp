@@ -94,9 +94,8 @@ GivenOption option_of(const std::string& name, const Json& value) {
 }  // namespace
 
 Json json_of(const ModelRecord& model) {
-  return {{"id", model.id},       {"name", model.name},
-          {"bytes", model.bytes}, {"usable", !model.refusal},
-          {"use", model.use},     {"report", Json::parse(model.inspection)}};
+  return {{"id", model.id},           {"name", model.name}, {"bytes", model.bytes},
+          {"usable", !model.refusal}, {"use", model.use},   {"report", Json::parse(model.inspection)}};
 }
 
 Json json_of(const Refusal& refusal) {

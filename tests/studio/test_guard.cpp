@@ -57,6 +57,7 @@ class GuardTest : public testing::Test {
     RequestHead head{.method = method, .path = path};
     head.host = "127.0.0.1:4321";
     head.authorization = "Bearer secret";
+    if (method == "POST") head.content_length = "0";
     return head;
   }
   int status(const RequestHead& head) const {
@@ -68,6 +69,15 @@ class GuardTest : public testing::Test {
 TEST_F(GuardTest, AnswersWhoHasTheToken) {
   EXPECT_EQ(status(asking("GET", "/api/state")), 200);
   EXPECT_EQ(status(asking("POST", "/api/models")), 200);
+}
+
+TEST_F(GuardTest, BodiesSayHowLongTheyAre) {
+  RequestHead head = asking("POST", "/api/models");
+  head.content_length.reset();
+  EXPECT_EQ(status(head), 411);
+  head = asking("POST", "/api/estimate");
+  head.has_transfer_encoding = true;
+  EXPECT_EQ(status(head), 411);
 }
 
 TEST_F(GuardTest, RefusesWhoHasNot) {

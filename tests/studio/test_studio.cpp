@@ -270,6 +270,19 @@ TEST(StudioJobs, AreCountedAndRemoved) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
+TEST(StudioJobs, GoWithTheirModel) {
+  StudioFolder folder({.jobs = 1});
+  folder.upload_block();
+  folder.studio().start_job("m1", {}, "{}");
+  folder.wait_for("j1");
+  const std::uint64_t before = folder.studio().changes_after(0, {}).moment;
+  folder.studio().remove_model("m1");
+  EXPECT_EQ(folder.studio().changes_after(before, {}).removed, (std::vector<std::string>{"j1", "m1"}));
+  EXPECT_EQ(folder.entries(), 0u);
+  folder.upload_block();
+  EXPECT_EQ(folder.studio().start_job("m2", {}, "{}").id, "j2") << "there is room again";
+}
+
 TEST(StudioJobs, EndWithTheStudio) {
   StudioFolder folder;
   folder.upload_block();
