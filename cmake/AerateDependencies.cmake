@@ -21,6 +21,11 @@ set_target_properties(libzip::zip PROPERTIES
   IMPORTED_LOCATION "${LIBZIP_LIBRARY}"
   INTERFACE_INCLUDE_DIRECTORIES "${LIBZIP_INCLUDE_DIR}")
 
+# Its header has to be compiled as its library was: Debian's pkg-config file says how.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(cpp-httplib REQUIRED IMPORTED_TARGET cpp-httplib)
+add_library(cpp-httplib::cpp-httplib ALIAS PkgConfig::cpp-httplib)
+
 # Debian keeps OpenVDB's find module beside the library instead of on CMake's path.
 if(NOT OpenVDB_FOUND)
   list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")

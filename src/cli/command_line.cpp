@@ -40,23 +40,6 @@ std::string about_config(const CLI::App& app, std::string what) {
   return app.get_config_ptr()->as<std::string>() + ": " + what;
 }
 
-// CLI11's message as an error of the program's own.
-[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
-  std::string what = error.what();
-  while (!what.empty() && what.back() == '\n') what.pop_back();
-  if (dynamic_cast<const CLI::ConfigError*>(&error) != nullptr) {
-    throw UsageError(about_config(app, what),
-                     "its lines are options by their long names without dashes, as in 'wall = 1.2'");
-  }
-  std::string command = app.get_name();
-  for (const CLI::App* chosen : app.get_subcommands()) command += " " + chosen->get_name();
-  const std::vector<std::string> unknown = app.remaining();
-  if (app.get_subcommands().empty() && !unknown.empty()) what = "'" + unknown.front() + "' is no command";
-  const UsageError refusal(what, "see '" + command + " --help'");
-  if (app.got_subcommand("hook")) throw on_one_line(refusal);
-  throw refusal;
-}
-
 std::string version_and_devices() {
   std::string text = "aerate " AERATE_VERSION;
   for (const std::string& device : describe_devices()) text += "\n" + device;
@@ -64,6 +47,23 @@ std::string version_and_devices() {
 }
 
 }  // namespace
+
+void refuse(const CLI::App& app, const CLI::ParseError& error) {
+  std::string what = error.what();
+  while (!what.empty() && what.back() == '\n') what.pop_back();
+  if (dynamic_cast<const CLI::ConfigError*>(&error) != nullptr) {
+    throw UsageError(about_config(app, what),
+                     "its lines are options by their long names without dashes, as in 'wall = 1.2'");
+  }
+  std::string command = app.get_name();
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  for (const CLI::App* each : chosen) command += " " + each->get_name();
+  const std::vector<std::string> unknown = app.remaining();
+  if (chosen.empty() && !unknown.empty()) what = "'" + unknown.front() + "' is no command";
+  const UsageError refusal(what, "see '" + command + " --help'");
+  if (!chosen.empty() && chosen.front()->get_name() == "hook") throw on_one_line(refusal);
+  throw refusal;
+}
 
 void run_command_line(int argc, const char* const* argv) {
   CLI::App app(
@@ -80,6 +80,7 @@ void run_command_line(int argc, const char* const* argv) {
   add_inspect_command(app, config);
   add_slice_command(app, config);
   add_hook_command(app, config);
+  add_studio_command(app, config);
 
   try {
     app.parse(argc, argv);

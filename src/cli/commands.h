@@ -4,7 +4,8 @@
 
 namespace CLI {
 class App;
-}
+class ParseError;
+}  // namespace CLI
 
 namespace aerate::cli {
 
@@ -17,6 +18,10 @@ void add_pack_command(CLI::App& app, const ConfigFile& config);
 void add_inspect_command(CLI::App& app, const ConfigFile& config);
 void add_slice_command(CLI::App& app, const ConfigFile& config);
 void add_hook_command(CLI::App& app, const ConfigFile& config);
+void add_studio_command(CLI::App& app, const ConfigFile& config);
+
+// The parser's message as an error of the program's own.
+[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error);
 
 // The same error in one line, with its hint, for `hook`: slicers show what a failing script wrote in a dialog.
 Error on_one_line(const Error& error);

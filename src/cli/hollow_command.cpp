@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/ranges.h>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +15,7 @@
 #include "cli/cell_options.h"
 #include "cli/commands.h"
 #include "cli/drainage_options.h"
+#include "cli/hollow_forms.h"
 #include "cli/keep_solid_options.h"
 #include "cli/model_options.h"
 #include "cli/numbers.h"
@@ -209,6 +212,12 @@ struct HollowCommand {
 
   const SlicerProfile* slicer_of_flavor() const {
     return &*std::ranges::find(slicers(), std::vector{flavor}, flavor_of);
+  }
+
+  // Of a result that may be in any file that these options allow.
+  std::string ending() const {
+    const bool is_in_package = void_form == "modifiers" || support_blockers;
+    return is_in_package ? slicer_of_flavor()->modifiers->ending : MeshFormat::stl.ending;
   }
 
   // Whose support blockers voids get, if any.
@@ -427,7 +436,38 @@ struct HollowCommand {
   std::string price_per = "kg";
 };
 
+// The command of a program that does nothing else.
+struct HollowAlone {
+  HollowAlone() : config(app), command(*app.add_subcommand("hollow", "")), hollow(command, config) {
+    app.require_subcommand(1);
+  }
+
+  CLI::App app{"", "aerate"};
+  ConfigFile config;
+  CLI::App& command;
+  HollowCommand hollow;
+};
+
 }  // namespace
+
+void visit_hollow_options(const std::function<void(const CLI::Option&)>& visit) {
+  HollowAlone alone;
+  for (const CLI::Option* option : std::as_const(alone.command).get_options()) visit(*option);
+}
+
+std::vector<JobForm> forms_of_hollow(const std::filesystem::path& model, const std::filesystem::path& stem,
+                                     std::vector<std::string> arguments) {
+  HollowAlone alone;
+  arguments.insert(arguments.begin(), {"hollow", model, "-o", stem});
+  std::ranges::reverse(arguments);  // as the parser takes them
+  try {
+    alone.app.parse(std::move(arguments));
+  } catch (const CLI::ParseError& error) {
+    refuse(alone.app, error);
+  }
+  alone.hollow.output = stem.string() + alone.hollow.ending();
+  return alone.hollow.forms();
+}
 
 void add_hollow_command(CLI::App& app, const ConfigFile& config) {
   CLI::App& command = *app.add_subcommand(

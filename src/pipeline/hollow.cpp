@@ -181,6 +181,10 @@ HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& 
 }
 
 HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor) {
+  return hollow(forms, monitor, [](const HollowedForm&, const HollowReport&, Monitor&) {});
+}
+
+HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor, const AlsoMade& also) {
   const HollowOptions& options = forms.front().options;
   static_cast<void>(solid_format_of(options));  // refuses what cannot be written
   if (options.plugs) require_writable(*options.plugs);
@@ -206,6 +210,7 @@ HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor) {
   }
   results.push_back(&pending.file());
   views.write([&] { return scene_of(best.hollowed, report); }, log);
+  also(best, report, log);
   views.commit_with(std::move(results));
   report.stages = log.finish();
   report.notices = log.notices();

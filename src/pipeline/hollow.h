@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "core/monitor.h"
@@ -17,6 +18,11 @@ HollowReport hollow(const HollowOptions& options, Monitor& monitor);
 
 // The same in the best of several forms (pipeline/best_form.h).
 HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor);
+
+// The same for who makes more of it: `also` is called with what was made and all that was found out (but for stages and notices)
+// before the result takes its place. What it throws leaves no result.
+using AlsoMade = std::function<void(const HollowedForm& made, const HollowReport& report, Monitor& monitor)>;
+HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor, const AlsoMade& also);
 
 // Writes a model that was carved in the form that `options.output` and `options.modifiers` say, for who needs several.
 // Neither predicts a print nor tells its stages.

@@ -9,10 +9,12 @@
 
 namespace aerate {
 
-InspectReport inspect_model(const InspectOptions& options, Monitor& monitor) {
-  JobLog log(monitor);
-  InspectReport report;
-  ViewFiles views(options.views, log);
+namespace {
+
+// All but what is told of the stages. The mesh is kept if it is to be shown.
+InspectedModel look_at(const InspectOptions& options, bool is_shown, JobLog& log) {
+  InspectedModel inspected;
+  InspectReport& report = inspected.report;
   PreparedModel model = load_and_inspect(options.model, options.load, log);
   report.input = model.input;
   if (options.self_intersections == SelfIntersectionSearch::on) {
@@ -23,9 +25,29 @@ InspectReport inspect_model(const InspectOptions& options, Monitor& monitor) {
     log.stage("drainage");
     report.drainage = inspect_drainage_of(model, *options.drainage, log);
   }
-  const Mesh as_read = options.views.are_asked_for() ? model.mesh : Mesh{};
-  report.use = use_of(std::move(model), {.mode = SurfaceMode::automatic, .weld = options.weld});
-  views.write([&] { return scene_of(as_read, report); }, log);
+  if (is_shown) inspected.mesh = model.mesh;
+  ModelUse use = use_of(std::move(model), {.mode = SurfaceMode::automatic, .weld = options.weld});
+  inspected.is_usable = use.is_usable;
+  report.use = std::move(use.words);
+  return inspected;
+}
+
+}  // namespace
+
+InspectedModel inspect_to_show(const InspectOptions& options, Monitor& monitor) {
+  JobLog log(monitor);
+  InspectedModel inspected = look_at(options, true, log);
+  inspected.report.stages = log.finish();
+  inspected.report.notices = log.notices();
+  return inspected;
+}
+
+InspectReport inspect_model(const InspectOptions& options, Monitor& monitor) {
+  JobLog log(monitor);
+  ViewFiles views(options.views, log);
+  InspectedModel inspected = look_at(options, options.views.are_asked_for(), log);
+  InspectReport report = std::move(inspected.report);
+  views.write([&] { return scene_of(inspected.mesh, report); }, log);
   views.commit_with({});
   report.stages = log.finish();
   report.notices = log.notices();

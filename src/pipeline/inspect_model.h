@@ -26,4 +26,14 @@ struct InspectOptions {
 // into drainage under a process that needs none.
 InspectReport inspect_model(const InspectOptions& options, Monitor& monitor);
 
+// A model that was looked at, with what there is to see of it.
+struct InspectedModel {
+  InspectReport report;
+  Mesh mesh;               // as it was read
+  bool is_usable = false;  // hollowing will make something of it
+};
+
+// The same for who shows it; `options.views` are not made.
+InspectedModel inspect_to_show(const InspectOptions& options, Monitor& monitor);
+
 }  // namespace aerate

@@ -233,19 +233,20 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
   return remesh(std::move(model), policy, monitor);
 }
 
-std::string use_of(PreparedModel model, const SurfacePolicy& policy) {
+ModelUse use_of(PreparedModel model, const SurfacePolicy& policy) {
   NoticeList done;
   try {
     require_size(model);
     mend(model, policy, done);
     if (surface_mode(model, policy) == SurfaceMode::remesh)
-      return "'aerate hollow' meshes the surface anew, which closes its holes (see --max-hole)";
+      return {true, "'aerate hollow' meshes the surface anew, which closes its holes (see --max-hole)"};
     static_cast<void>(keep(std::move(model), policy, done));
   } catch (const MeshError& error) {
-    return fmt::format("none: {}; {}", error.what(), error.hint());
+    return {false, fmt::format("none: {}; {}", error.what(), error.hint())};
   }
-  if (done.texts.empty()) return "'aerate hollow' can keep this surface as it is";
-  return fmt::format("'aerate hollow' can keep this surface, mended: {}", fmt::join(done.texts, "; "));
+  if (done.texts.empty()) return {true, "'aerate hollow' can keep this surface as it is"};
+  return {true,
+          fmt::format("'aerate hollow' can keep this surface, mended: {}", fmt::join(done.texts, "; "))};
 }
 
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor) {

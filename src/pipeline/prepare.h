@@ -55,8 +55,12 @@ PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOpti
 // does not let mend, or that remeshing would lose parts of.
 PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor);
 
-// What hollowing will make of a model, in words: whether its surface can be kept, or what stands in the way.
-std::string use_of(PreparedModel model, const SurfacePolicy& policy);
+// What hollowing will make of a model: whether its surface can be kept, or what stands in the way.
+struct ModelUse {
+  bool is_usable = false;
+  std::string words;
+};
+ModelUse use_of(PreparedModel model, const SurfacePolicy& policy);
 
 // Both, as `hollow` is asked to, the model's own cavities opened, and the regions that stay solid. Unless the options say, voxels for remeshing leave room for wall and gap.
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor);

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "view/built_files.h"
 #include "view/deflate.h"
 #include "view/page_geometry.h"
-#include "view/page_template.h"
 
 namespace aerate {
 namespace {
@@ -18,6 +18,8 @@ using Json = nlohmann::json;
 
 // Version of what web/src/scene.ts reads.
 constexpr int kPageFormat = 1;
+
+constexpr std::string_view kPage = "view.html";
 
 // What the built page has in the place of its data.
 constexpr std::string_view kDataGoesHere = "<!--data-->";
@@ -133,7 +135,7 @@ std::string in_four_bytes(std::size_t number) {
 
 }  // namespace
 
-std::string page_data(const Scene& scene, std::string_view program) {
+std::string page_bytes(const Scene& scene, std::string_view program) {
   const PageGrid grid = page_grid(scene.mesh, scene.tolerance);
   const PageGeometry geometry = encode_geometry(scene.mesh, scene.parts, grid);
   const Json header = {
@@ -160,21 +162,25 @@ std::string page_data(const Scene& scene, std::string_view program) {
   };
   // File names may hold any bytes; what is not UTF-8 is replaced.
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return base64(deflated(in_four_bytes(text.size()) + text + geometry.steps + geometry.links + geometry.x +
-                         geometry.y + geometry.z));
+  return deflated(in_four_bytes(text.size()) + text + geometry.steps + geometry.links + geometry.x +
+                  geometry.y + geometry.z);
+}
+
+std::string page_data(const Scene& scene, std::string_view program) {
+  return base64(page_bytes(scene, program));
 }
 
 void require_page() {
-  if (page_template()) return;
+  if (built_file(kPage)) return;
   throw UsageError(
-      fmt::format("--view: this program was built without the page ({})", why_no_page()),
+      fmt::format("--view: this program was built without the page ({})", why_no_built_file(kPage)),
       "install node 18 or newer and npm (Debian: nodejs npm) and configure the build again, or give it the "
       "built page of a release: cmake -DAERATE_VIEW_PAGE=view.html");
 }
 
 std::string page_of(const Scene& scene, std::string_view program) {
   require_page();
-  const std::string_view page = *page_template();
+  const std::string_view page = *built_file(kPage);
   const std::size_t at = page.find(kDataGoesHere);
   if (at == std::string_view::npos)
     throw FailureError("the page that this program was built with takes no data");

@@ -7,7 +7,7 @@
 #include "tests/cli/job.h"
 #include "tests/support/caught.h"
 #include "tests/view/page_reader.h"
-#include "view/page_template.h"
+#include "view/built_files.h"
 
 // --view: a page beside the result, which is there with it or not at all.
 namespace aerate::test {
@@ -34,7 +34,8 @@ Json header_of(const std::filesystem::path& page) {
 class View : public testing::Test {
  protected:
   void SetUp() override {
-    if (!page_template()) GTEST_SKIP() << "built without the page: " << why_no_page();
+    if (!built_file("view.html"))
+      GTEST_SKIP() << "built without the page: " << why_no_built_file("view.html");
   }
 
   ProcessResult hollow(const Names& more) const {
@@ -117,12 +118,12 @@ TEST_F(View, ReplacesNeitherTheResultNorTheModel) {
 }
 
 TEST(ViewWithoutPage, SaysWhatTheBuildWasMissing) {
-  if (page_template()) GTEST_SKIP() << "built with the page";
+  if (built_file("view.html")) GTEST_SKIP() << "built with the page";
   const Job job;
   const ProcessResult result =
       run(job.hollow(job.input("block.stl", block()), {"--view", job.output("page.html")}));
   EXPECT_EQ(result.exit_code, kUsage);
-  EXPECT_TRUE(contains(result.err, std::string(why_no_page())));
+  EXPECT_TRUE(contains(result.err, std::string(why_no_built_file("view.html"))));
   EXPECT_EQ(entries_of(job.outputs()), Names{});
 }
 

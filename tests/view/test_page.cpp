@@ -9,9 +9,9 @@
 #include "tests/support/files.h"
 #include "tests/support/shapes.h"
 #include "tests/view/page_reader.h"
+#include "view/built_files.h"
 #include "view/deflate.h"
 #include "view/page.h"
-#include "view/page_template.h"
 
 namespace aerate {
 namespace {
@@ -89,7 +89,7 @@ TEST(Page, AWallThatIsNotKnownIsNull) {
 }
 
 TEST(Page, IsOneFileThatAsksForNothing) {
-  if (!page_template()) GTEST_SKIP() << "built without the page: " << why_no_page();
+  if (!built_file("view.html")) GTEST_SKIP() << "built without the page: " << why_no_built_file("view.html");
   const Scene scene = box_with_a_void();
   const std::string page = page_of(scene, "aerate 1");
   EXPECT_NE(page.find(page_data(scene, "aerate 1")), std::string::npos);
@@ -101,12 +101,12 @@ TEST(Page, IsOneFileThatAsksForNothing) {
 }
 
 TEST(Page, SaysWhatTheBuildWasMissing) {
-  if (page_template()) GTEST_SKIP() << "built with the page";
+  if (built_file("view.html")) GTEST_SKIP() << "built with the page";
   try {
     require_page();
     FAIL() << "nothing was said";
   } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find(std::string(why_no_page())), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find(std::string(why_no_built_file("view.html"))), std::string::npos);
   }
 }
 

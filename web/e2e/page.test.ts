@@ -1,16 +1,13 @@
 // Pages that the program wrote (scripts/test-web), as a browser shows them that opens them from disk.
 import { existsSync } from 'node:fs';
-import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
+import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it } from 'vitest';
 import { raised } from '../src/figures';
-import { Pixels } from './pixels';
+import { launch } from './browser';
+import { pixelsOf } from './pixels';
+import { unreadable } from './readable';
 
 const kPages = process.env.AERATE_PAGES ?? '';
-const kBrowser =
-  process.env.AERATE_BROWSER ?? ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
-
-// Chromium draws on the CPU.
-const kArguments = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 
 let browser: Browser;
 let messages: string[] = [];
@@ -18,8 +15,7 @@ let requests: string[] = [];
 
 beforeAll(async () => {
   if (!existsSync(kPages)) throw new Error('AERATE_PAGES names no folder: run scripts/test-web');
-  if (!kBrowser) throw new Error('there is no Chromium: AERATE_BROWSER says where one is');
-  browser = await chromium.launch({ executablePath: kBrowser, args: kArguments });
+  browser = await launch();
 });
 afterAll(async () => browser?.close());
 beforeEach(() => {
@@ -42,12 +38,6 @@ async function open(options: BrowserContextOptions = {}, name = 'voids'): Promis
   expect(await page.getAttribute('html', 'data-ready')).toBe('true');
   return page;
 }
-
-const pixelsOf = async (page: Page): Promise<Pixels> => {
-  // What was asked for is drawn with the next frame.
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-  return new Pixels(await page.evaluate(() => (document.getElementById('canvas') as HTMLCanvasElement).toDataURL()), page);
-};
 
 // Cuts through the middle of the largest void, and tells where that is, a place in the solid beside it and one outside of the
 // model, in pixels of the canvas.
@@ -195,35 +185,7 @@ describe('the page', () => {
       const page = await open({ colorScheme });
       await page.check('input[name=by][value=radius]');
       await page.click('#help summary');
-      const faint = await page.evaluate(() => {
-        const channel = (value: number) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4);
-        const light = (colour: string) => {
-          const [r, g, b] = (colour.match(/[\d.]+/g) ?? []).map((part) => channel(Number(part) / 255));
-          return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-        };
-        const ground = (element: Element | null): string => {
-          for (let at = element; at; at = at.parentElement) {
-            const colour = getComputedStyle(at).backgroundColor;
-            if (!/, 0\)$/.test(colour)) return colour;
-          }
-          return 'rgb(255, 255, 255)';
-        };
-        const found: string[] = [];
-        for (const element of document.querySelectorAll('#panel *, #legend *')) {
-          const own = [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent?.trim());
-          if (!own || !(element instanceof HTMLElement) || element.offsetParent === null) continue;
-          if (element.closest('fieldset :disabled')) continue;
-          const [a, b] = [light(getComputedStyle(element).color), light(ground(element))];
-          const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-          if (ratio < 4.5) found.push(`${element.textContent}: ${ratio.toFixed(2)}`);
-        }
-        for (const input of document.querySelectorAll<HTMLInputElement>('#panel input'))
-          if (!input.labels?.length) found.push(`${input.id} has no label`);
-        for (const button of document.querySelectorAll('#panel button'))
-          if (!(button.getAttribute('aria-label') ?? button.textContent)) found.push('a button has no name');
-        return found;
-      });
-      expect(faint).toEqual([]);
+      expect(await unreadable(page, '#panel, #legend')).toEqual([]);
       await page.context().close();
     }
   });

@@ -13,11 +13,12 @@ export class Pixels {
   constructor(
     private readonly url: string,
     private readonly page: Page,
+    private readonly canvas: string, // its id
   ) {}
 
   private async look(place: Place = [0, 0]): Promise<Look> {
     return this.page.evaluate(
-      async ([url, [x, y]]) => {
+      async ([url, [x, y], id]) => {
         const kReach = 14;
         const image = new Image();
         image.src = url;
@@ -28,7 +29,7 @@ export class Pixels {
         const context = canvas.getContext('2d', { willReadFrequently: true })!;
         context.drawImage(image, 0, 0);
         const { data } = context.getImageData(0, 0, image.width, image.height);
-        const scale = image.width / document.getElementById('canvas')!.clientWidth;
+        const scale = image.width / document.getElementById(id)!.clientWidth;
         const at = [Math.round(x * scale), Math.round(y * scale)];
         const first = (atX: number, atY: number): number => 4 * (atY * image.width + atX);
         let drawn = 0;
@@ -43,7 +44,7 @@ export class Pixels {
         const here = first(at[0], at[1]);
         return { colour: [...data.slice(here, here + 4)], colours: seen.size, covered: drawn / (data.length / 4) };
       },
-      [this.url, place] as const,
+      [this.url, place, this.canvas] as const,
     );
   }
 
@@ -68,4 +69,11 @@ export class Pixels {
   differs(other: Pixels): boolean {
     return this.url !== other.url;
   }
+}
+
+export async function pixelsOf(page: Page, canvas = 'canvas'): Promise<Pixels> {
+  // What was asked for is drawn with the next frame.
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  const url = await page.evaluate((id) => (document.getElementById(id) as HTMLCanvasElement).toDataURL(), canvas);
+  return new Pixels(url, page, canvas);
 }

@@ -1,6 +1,7 @@
 // The report: before and after, its figures, how large the voids are, what is marked.
 import { format } from './colours';
 import { make } from './dom';
+import type { Frame } from './frame';
 import { histogram } from './histogram';
 import { nameOfVoids, type Change, type Mark, type Scene } from './scene';
 
@@ -51,9 +52,9 @@ function marksOf(marks: readonly Mark[], onMark: (mark: Mark) => void): HTMLElem
   return list;
 }
 
-export function showFigures(scene: Scene, into: HTMLElement, onMark: (mark: Mark) => void): void {
+export function showFigures(scene: Scene, { figures, level }: Frame, onMark: (mark: Mark) => void): void {
   const section = (title: string, ...content: readonly Node[]): void => {
-    into.append(make('section', {}, make('h2', {}, title), ...content));
+    figures.append(make('section', {}, make(level === 1 ? 'h2' : 'h3', {}, title), ...content));
   };
   if (scene.changes.length > 0) section('Before and after', beforeAndAfter(scene.changes));
   if (scene.marks.length > 0) section('Marked in the model', marksOf(scene.marks, onMark));

@@ -3,7 +3,8 @@ import { choicesOf, legendOf, type ColourBy, type Rgb } from './colours';
 import type { Axis, Cut, Layers } from './cut';
 import { kAxes } from './cut';
 import { format } from './colours';
-import { byId, make } from './dom';
+import { make } from './dom';
+import type { Frame } from './frame';
 import type { Geometry } from './geometry';
 import { nameOfVoids, type Kind, type Scene } from './scene';
 import type { Outer } from './stage';
@@ -71,6 +72,7 @@ function check(title: string, id: string, onChange: (on: boolean) => void, swatc
 export const kCutSteps = 500;
 
 export function makePanel(
+  frame: Frame,
   scene: Scene,
   geometry: Geometry,
   layers: Layers,
@@ -81,7 +83,8 @@ export function makePanel(
   current: () => State,
   onPrint: () => void,
 ): (state: State) => void {
-  const form = byId('controls', HTMLFormElement);
+  const form = frame.controls;
+  const id = (name: string): string => frame.ids + name;
   form.addEventListener('submit', (event) => event.preventDefault());
   const names = nameOfVoids(scene.use);
 
@@ -91,14 +94,14 @@ export function makePanel(
     [...kAxes.map((axis) => ({ value: axis, text: axis })), { value: 'none', text: 'not cut' }],
     (axis) => change({ cut: { ...current().cut, axis: axis === 'none' ? null : axis } }),
   );
-  const place = slider('Place', 'cut', kCutSteps, (at) => change({ cut: { ...current().cut, share: at / kCutSteps } }));
-  const flip = check('Keep the other half', 'flip', (flipped) => change({ cut: { ...current().cut, flipped } }));
-  const alone = check('Cut face alone', 'alone', (cutAlone) => change({ cutAlone }));
+  const place = slider('Place', id('cut'), kCutSteps, (at) => change({ cut: { ...current().cut, share: at / kCutSteps } }));
+  const flip = check('Keep the other half', id('flip'), (flipped) => change({ cut: { ...current().cut, flipped } }));
+  const alone = check('Cut face alone', id('alone'), (cutAlone) => change({ cutAlone }));
   const openNote = make('p', { class: 'note' }, scene.closed ? 'This device cannot close the cut face.' : 'The surface is open: the cut shows no face.');
   axes.element.append(place.element, make('div', { class: 'checks' }, flip.element, alone.element));
   if (!closesCuts) axes.element.append(openNote);
 
-  const layer = slider('Printed up to layer', 'layer', layers.count, (printed) => change({ printed: Math.max(printed, 1) }));
+  const layer = slider('Printed up to layer', id('layer'), layers.count, (printed) => change({ printed: Math.max(printed, 1) }));
   layer.input.min = '1';
   const layerNote = make(
     'p',
@@ -122,7 +125,7 @@ export function makePanel(
     kind,
     ...check(
       kindNames[kind] ?? kind,
-      `show-${kind}`,
+      id(`show-${kind}`),
       (on) => {
         const shown = new Set(current().kinds);
         if (on) shown.add(kind);
@@ -132,7 +135,7 @@ export function makePanel(
       colours[kind],
     ),
   }));
-  const marks = check('Marks', 'show-marks', (on) => change({ marks: on }));
+  const marks = check('Marks', id('show-marks'), (on) => change({ marks: on }));
   const shown = make('fieldset', {}, make('legend', {}, 'Show'));
   shown.append(make('div', { class: 'checks' }, ...boxes.map(({ element }) => element)));
   if (scene.marks.length > 0) shown.firstElementChild?.nextElementSibling?.append(marks.element);
@@ -145,7 +148,7 @@ export function makePanel(
   );
 
   const count = scene.voids.radius.length;
-  const number = make('input', { type: 'number', id: 'number', min: '1', max: String(count), inputmode: 'numeric' });
+  const number = make('input', { type: 'number', id: id('number'), min: '1', max: String(count), inputmode: 'numeric' });
   number.addEventListener('change', () => {
     const at = scene.voids.number.indexOf(Number(number.value));
     change({ chosen: at >= 0 ? at : null });
@@ -160,7 +163,7 @@ export function makePanel(
   const voids = make(
     'div',
     { class: 'void-row' },
-    make('label', { for: 'number' }, names.one),
+    make('label', { for: id('number') }, names.one),
     button('\u2039', `Previous ${one}`, step(-1)),
     number,
     button('\u203a', `Next ${one}`, step(1)),
@@ -196,8 +199,8 @@ export function makePanel(
     marks.input.checked = state.marks;
     by.set(state.by);
     number.value = state.chosen === null ? '' : String(scene.voids.number[state.chosen]);
-    showLegend(scene, state.by);
-    showChosen(scene, state.chosen);
+    showLegend(frame.legend, scene, state.by);
+    showChosen(frame.chosen, scene, state.chosen);
   };
 }
 
@@ -207,8 +210,7 @@ export function nextVoid(count: number, chosen: number | null, by: number): numb
   return (chosen + by + count) % count;
 }
 
-function showLegend(scene: Scene, by: ColourBy): void {
-  const box = byId('legend', HTMLDivElement);
+function showLegend(box: HTMLElement, scene: Scene, by: ColourBy): void {
   const legend = legendOf(scene, by);
   box.hidden = !legend;
   if (!legend) return;
@@ -218,8 +220,7 @@ function showLegend(scene: Scene, by: ColourBy): void {
   box.replaceChildren(make('p', {}, legend.title), bar, ends);
 }
 
-function showChosen(scene: Scene, chosen: number | null): void {
-  const box = byId('chosen', HTMLDivElement);
+function showChosen(box: HTMLElement, scene: Scene, chosen: number | null): void {
   box.hidden = chosen === null;
   if (chosen === null) return box.replaceChildren();
   const { number, place, radius, volume, wall } = scene.voids;

@@ -17,9 +17,11 @@ async function inflated(packed: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// A header's length (4 bytes, the lowest first), the header as JSON, the streams; all deflated, as base64.
-export async function unpack(base64: string): Promise<Payload> {
-  const bytes = await inflated(bytesOf(base64.trim()));
+export const unpack = (base64: string): Promise<Payload> => unpackBytes(bytesOf(base64.trim()));
+
+// A header's length (4 bytes, the lowest first), the header as JSON, the streams; all deflated.
+export async function unpackBytes(packed: Uint8Array<ArrayBuffer>): Promise<Payload> {
+  const bytes = await inflated(packed);
   const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true);
   const scene = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + length))) as Scene;
   if (scene.format !== 1) throw new Error(`data of format ${String(scene.format)}, this page reads 1`);

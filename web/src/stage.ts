@@ -55,6 +55,12 @@ export interface Theme {
   readonly mark: Vec3;
 }
 
+// Where the camera is and what it looks at, mm in the model's coordinates.
+export interface View {
+  readonly from: Vec3;
+  readonly at: Vec3;
+}
+
 // Planes that take nothing away.
 const kNowhere = new Vector4(0, 0, 1, 1e9);
 
@@ -112,10 +118,14 @@ export class Stage {
   private readonly radius: number;
   // Some old devices cannot count.
   readonly closesCuts: boolean;
+  private isDisposed = false;
+  private isHeld = false; // by a pointer
   private wanted = false;
   private cuts: readonly Plane[] = [];
   private isCapped = false;
   onDrawn: (() => void) | null = null;
+  onMoved: (() => void) | null = null; // by who looks
+  private readonly sizes: ResizeObserver;
 
   constructor(
     readonly canvas: HTMLCanvasElement,
@@ -135,9 +145,16 @@ export class Stage {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.minDistance = this.radius * 0.05;
     this.controls.maxDistance = this.radius * 20;
-    this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('change', () => {
+      if (this.isHeld) this.onMoved?.();
+      this.draw();
+    });
     this.controls.addEventListener('start', () => {
       this.fitted = null;
+      this.isHeld = true;
+    });
+    this.controls.addEventListener('end', () => {
+      this.isHeld = false;
     });
     this.tint = new BufferAttribute(tints, 4, true);
     this.cap = {
@@ -152,7 +169,8 @@ export class Stage {
     this.addSurfaces(normals);
     this.addCaps();
     this.addMarks();
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
+    this.sizes = new ResizeObserver(() => this.resize());
+    this.sizes.observe(canvas.parentElement ?? canvas);
     this.resize();
   }
 
@@ -234,6 +252,11 @@ export class Stage {
       });
       this.caps.push(this.add(this.graph, shape, material, 1));
     }
+  }
+
+  private offCentre([x, y, z]: Vec3): Vec3 {
+    const { centre } = this.geometry;
+    return [x - centre[0], y - centre[1], z - centre[2]];
   }
 
   private fromCentre(values: readonly number[]): number[] {
@@ -357,11 +380,32 @@ export class Stage {
 
   lookAt(place: Vec3): void {
     this.fitted = null;
-    const target = new Vector3(...this.fromCentre(place));
+    const target = new Vector3(...this.offCentre(place));
     this.camera.position.add(target).sub(this.controls.target);
     this.controls.target.copy(target);
+    this.movedByHand();
+  }
+
+  view(): View {
+    const inModel = (at: Vector3): Vec3 => {
+      const [x, y, z] = this.geometry.centre;
+      return [at.x + x, at.y + y, at.z + z];
+    };
+    return { from: inModel(this.camera.position), at: inModel(this.controls.target) };
+  }
+
+  lookAs({ from, at }: View): void {
+    this.fitted = null;
+    this.controls.target.set(...this.offCentre(at));
+    this.camera.position.set(...this.offCentre(from));
     this.controls.update();
     this.draw();
+  }
+
+  private movedByHand(): void {
+    this.controls.update();
+    this.draw();
+    this.onMoved?.();
   }
 
   // Radians about the axis that is up, and up or down.
@@ -374,8 +418,7 @@ export class Stage {
     const turned = Math.min(Math.max(polar - up, 0.02), Math.PI - 0.02);
     off.applyAxisAngle(side, turned - polar).applyAxisAngle(axis, aside);
     this.camera.position.copy(this.controls.target).add(off);
-    this.controls.update();
-    this.draw();
+    this.movedByHand();
   }
 
   zoom(factor: number): void {
@@ -383,8 +426,7 @@ export class Stage {
     const off = this.camera.position.clone().sub(this.controls.target);
     const length = Math.min(Math.max(off.length() / factor, this.controls.minDistance), this.controls.maxDistance);
     this.camera.position.copy(this.controls.target).add(off.setLength(length));
-    this.controls.update();
-    this.draw();
+    this.movedByHand();
   }
 
   // Whether the camera is on the side that is taken away.
@@ -413,6 +455,7 @@ export class Stage {
   }
 
   drawNow(): void {
+    if (this.isDisposed) return;
     const distance = this.camera.position.length();
     this.camera.near = Math.max(distance - this.radius * 1.5, this.radius * 0.01);
     this.camera.far = distance + this.radius * 1.5;
@@ -436,7 +479,7 @@ export class Stage {
   // Where a place of the model is on the canvas, in CSS pixels.
   project(place: Vec3): readonly [number, number] {
     this.camera.updateMatrixWorld();
-    const at = new Vector3(...this.fromCentre(place)).project(this.camera);
+    const at = new Vector3(...this.offCentre(place)).project(this.camera);
     return [((at.x + 1) / 2) * this.canvas.clientWidth, ((1 - at.y) / 2) * this.canvas.clientHeight];
   }
 
@@ -446,5 +489,17 @@ export class Stage {
     const at = new Vector3((2 * x) / this.canvas.clientWidth - 1, 1 - (2 * y) / this.canvas.clientHeight, 0.5);
     const way = at.unproject(this.camera).sub(this.camera.position).normalize();
     return { from: this.camera.position.toArray(), way: way.toArray() };
+  }
+
+  // Gives back the memory of the device; nothing can be drawn afterwards.
+  dispose(): void {
+    this.sizes.disconnect();
+    this.controls.dispose();
+    this.onDrawn = null;
+    this.isDisposed = true;
+    this.counts.dispose();
+    const context = this.renderer.getContext();
+    this.renderer.dispose();
+    context.getExtension('WEBGL_lose_context')?.loseContext();
   }
 }

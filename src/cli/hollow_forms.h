@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/best_form.h"
+
+namespace CLI {
+class Option;
+}
+
+namespace aerate::cli {
+
+// Every option of 'aerate hollow'.
+void visit_hollow_options(const std::function<void(const CLI::Option&)>& visit);
+
+// What 'aerate hollow' would do with this model and these arguments. Throws UsageError as it does.
+//   stem: of the result, which gets the ending that the options ask for, .stl if they ask for none
+std::vector<JobForm> forms_of_hollow(const std::filesystem::path& model, const std::filesystem::path& stem,
+                                     std::vector<std::string> arguments);
+
+}  // namespace aerate::cli

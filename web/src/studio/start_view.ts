@@ -1,0 +1,82 @@
+// The estimate, the command line that does the same, and the button.
+import { make } from '../dom';
+import { troubleOf, type Api } from './api';
+import { attempt, copyButton, trouble } from './pieces';
+import type { Session } from './session';
+import { modelChosen, type Page } from './store';
+import type { Estimate, Trouble } from './told';
+
+// Those that were asked for while others were waited for do not matter any more.
+class Estimates {
+  private asked: AbortController | null = null;
+  private timer = 0;
+
+  constructor(
+    private readonly api: Api,
+    private readonly onAnswer: (estimate: Estimate | null, refused: Trouble | null) => void,
+  ) {}
+
+  // After a moment in which nothing else is asked.
+  want({ options, connection, ...page }: Page): void {
+    const kMoment = 200; // ms
+    window.clearTimeout(this.timer);
+    this.asked?.abort();
+    const model = page.models.find(({ id }) => id === page.chosen);
+    if (!model?.usable || connection !== 'open') return this.onAnswer(null, null);
+    this.timer = window.setTimeout(async () => {
+      const asked = new AbortController();
+      this.asked = asked;
+      try {
+        const estimate = await this.api.estimate(model.id, options, asked.signal);
+        if (!asked.signal.aborted) this.onAnswer(estimate, null);
+      } catch (error) {
+        if (!asked.signal.aborted) this.onAnswer(null, troubleOf(error));
+      }
+    }, kMoment);
+  }
+}
+
+export function showStart(into: HTMLElement, form: HTMLFormElement, session: Session): void {
+  const { store, api } = session;
+  const rows = make('dl', { id: 'estimate', 'aria-live': 'polite' });
+  const command = make('code', { id: 'command', tabindex: '0', 'aria-label': 'Command line' });
+  const line = make('details', { class: 'command' }, make('summary', {}, 'The same on the command line'), command, copyButton('Copy', () => command.textContent ?? ''));
+  const words = make('div', { id: 'refused' });
+  const go = make('button', { type: 'submit', id: 'go', class: 'go' }, 'Hollow it');
+  const press = make('div', { class: 'press' }, go);
+  into.append(rows, words, line, press);
+
+  const estimates = new Estimates(api, (estimate, refused) => {
+    into.removeAttribute('aria-busy');
+    rows.replaceChildren(
+      ...(estimate?.rows ?? []).map(({ label, value }) => make('div', {}, make('dt', {}, label), make('dd', {}, value))),
+    );
+    command.textContent = estimate?.command ?? '';
+    line.hidden = !estimate;
+    words.replaceChildren(...(refused ? [trouble(refused)] : []));
+    const model = modelChosen(store.now);
+    if (!model) words.replaceChildren(make('p', { class: 'note' }, 'Add a model, and what can be saved is estimated here.'));
+    else if (!model.usable) words.replaceChildren(make('p', { class: 'note' }, 'This model cannot be hollowed as it is; what is wrong is marked in it.'));
+    go.disabled = !model?.usable || refused !== null;
+  });
+  let last: readonly unknown[] = [];
+  store.listen((page) => {
+    const now = [page.chosen, page.options, page.connection, modelChosen(page)];
+    if (now.every((one, i) => one === last[i])) return;
+    last = now;
+    go.disabled = page.connection !== 'open' || !modelChosen(page)?.usable;
+    into.setAttribute('aria-busy', 'true');
+    estimates.want(page);
+  });
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    if (go.disabled) return;
+    go.disabled = true;
+    const hollow = async (): Promise<void> => {
+      await session.hollow();
+      // On a narrow window it is further down.
+      document.getElementById('show')?.scrollIntoView({ block: 'start' });
+    };
+    void attempt(hollow, go).finally(() => (go.disabled = false));
+  });
+}

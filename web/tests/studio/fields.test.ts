@@ -1,0 +1,71 @@
+import { expect, it } from 'vitest';
+import { entryOf, fieldOf, groupsOf, isAsked, kMain, valueOf, withValue } from '../../src/studio/fields';
+import type { OptionRow, Process } from '../../src/studio/told';
+
+const row = (name: string, kind: OptionRow['kind'], more: Partial<OptionRow> = {}): OptionRow => ({
+  name,
+  kind,
+  unit: '',
+  default: null,
+  description: '',
+  group: '',
+  ...more,
+});
+
+const kProcess: Process = {
+  name: 'sla',
+  title: 'resin printers',
+  material: 'resin',
+  rows: [
+    { option: 'wall', name: 'wall', value: 2, unit: 'mm', source: 'a guide' },
+    { option: 'bridge', name: 'bridge', value: null, unit: 'mm', source: null },
+    { option: null, name: 'least-wall', value: 0.5, unit: 'mm', source: 'another guide' },
+  ],
+};
+
+it('takes what holds by default from the process, with its source, before what the program says', () => {
+  const wall = row('wall', 'number', { unit: 'mm', default: '1.2' });
+  expect(fieldOf(wall, kProcess)).toMatchObject({ title: 'Wall', standard: '2', unit: 'mm', source: 'a guide' });
+  expect(fieldOf(wall, undefined)).toMatchObject({ standard: '1.2', source: '' });
+  expect(fieldOf(row('bridge', 'number'), kProcess).standard).toBe('none');
+  expect(fieldOf(row('some-new-thing', 'text'), kProcess)).toMatchObject({ title: 'Some new thing', standard: '' });
+});
+
+it('shows each option once, in the groups and the order that the program tells', () => {
+  const names = ['process', 'up', 'wall', 'max-radius', 'infill', 'layer-height', 'force'];
+  const group = ['Process', 'Process', 'Limits', 'Limits', 'The print', 'The print', 'More'];
+  const rows = names.map((name, i) => row(name, 'text', { group: group[i] }));
+  const groups = groupsOf(rows, kProcess).map(({ title, fields }) => [title, ...fields.map((field) => field.row.name)]);
+  expect(groups).toEqual([['Process', 'up'], ['Limits', 'max-radius'], ['The print', 'layer-height'], ['More', 'force']]);
+  const main = rows.filter((one) => kMain.includes(one.name)).map(({ name }) => name);
+  expect(main).toEqual(['wall', 'infill']);
+  expect(rows.filter(isAsked)).toHaveLength(names.length - 1);
+});
+
+it('sends what was given, and nothing else', () => {
+  const wall = row('wall', 'number');
+  expect(valueOf(wall, ' 2.5 ')).toBe('2.5');
+  expect(valueOf(wall, '1,5')).toBe('1.5');
+  expect(valueOf(wall, '')).toBeNull();
+  expect(valueOf(wall, 'thick')).toBe('thick'); // the program says what is wrong with it
+  expect(valueOf(row('scale', 'text'), '1,1,1.02')).toBe('1,1,1.02');
+  expect(valueOf(row('holes-on', 'list'), 'bottom\n\n left ')).toEqual(['bottom', 'left']);
+  expect(valueOf(row('holes-on', 'list'), '\n')).toBeNull();
+});
+
+it('knows flags that are off from flags that nobody touched', () => {
+  const drain = row('drain', 'flag', { off: true });
+  expect([valueOf(drain, 'true'), valueOf(drain, 'false'), valueOf(drain, '')]).toEqual([true, false, null]);
+  const blockers = row('support-blockers', 'flag');
+  expect([valueOf(blockers, 'true'), valueOf(blockers, 'false')]).toEqual([true, null]);
+  const stand = row('stand', 'number', { bare: true });
+  expect([valueOf(stand, 'true'), valueOf(stand, '-2'), valueOf(stand, '')]).toEqual([true, '-2', null]);
+});
+
+it('shows again what was given', () => {
+  for (const entry of ['2.5', 'true', 'false', '']) expect(entryOf(entry === '' ? undefined : entry)).toBe(entry);
+  expect(entryOf(false)).toBe('false');
+  expect(entryOf(['bottom', 'left'])).toBe('bottom\nleft');
+  expect(withValue({ wall: '2' }, 'gap', '1')).toEqual({ wall: '2', gap: '1' });
+  expect(withValue({ wall: '2', gap: '1' }, 'gap', null)).toEqual({ wall: '2' });
+});
