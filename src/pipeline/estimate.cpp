@@ -29,7 +29,7 @@ struct Taken {
 constexpr Taken kTaken[] = {
     {false, false, false, {0.35, 0.85}}, {false, false, true, {0.35, 0.85}}, {false, true, false, {0.3, 0.8}},
     {false, true, true, {0.3, 0.8}},     {true, false, false, {0.6, 1}},     {true, false, true, {0.5, 0.95}},
-    {true, true, false, {0.6, 1.02}},       {true, true, true, {0.3, 0.9}},
+    {true, true, false, {0.6, 1.02}},    {true, true, true, {0.3, 0.9}},
 };
 
 ShareRange taken_by(const HollowOptions& options) {
