@@ -45,7 +45,7 @@ void make_folder(const fs::path& folder) {
 
 // Until another batch ends, or what a killed one started.
 int locked(const fs::path& folder) {
-  constexpr std::chrono::seconds kLongest(10);
+  constexpr std::chrono::seconds kLongest(5);
   constexpr std::chrono::milliseconds kPause(20);
   const fs::path file = folder / "lock";
   const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);

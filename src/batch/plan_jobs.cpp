@@ -172,7 +172,7 @@ JobEstimate estimate_of_file(const fs::path& model, double bytes, bool has_pictu
   std::ranges::transform(ending, ending.begin(),
                          [](unsigned char byte) { return static_cast<char>(std::tolower(byte)); });
   static const std::map<std::string, double> kBytesPerTriangle{
-      {".3mf", 10}, {".obj", 60}, {".off", 60}, {".ply", 20}, {".glb", 20}, {".gltf", 20}, {".3ds", 20}};
+      {".3mf", 10}, {".obj", 25}, {".off", 25}, {".ply", 20}, {".glb", 20}, {".gltf", 20}, {".3ds", 20}};
   const auto found = kBytesPerTriangle.find(ending);
   JobEstimate estimate;
   estimate.triangles = bytes / (found == kBytesPerTriangle.end() ? 50 : found->second);

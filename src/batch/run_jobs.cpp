@@ -47,8 +47,11 @@ std::string error_in(std::string_view printed) {
   return error;
 }
 
-std::string message_of(const ChildOutcome& outcome) {
-  const std::string said = error_in(outcome.printed);
+std::string message_of(const ChildOutcome& outcome, const fs::path& model) {
+  std::string said = error_in(outcome.printed);
+  // The row names the model.
+  if (const std::string name = printable(model.string()) + ": "; said.starts_with(name))
+    said.erase(0, name.size());
   if (!said.empty()) return said;
   if (outcome.exit_code <= kFirstSignal)
     return fmt::format("it ended with exit status {}", outcome.exit_code);
@@ -114,7 +117,7 @@ JobRecord run_job(const PlannedJob& job, const fs::path& program, int threads, c
     if (record.outcome == Outcome::done) {
       read_report(job.paths.report, record);
     } else {
-      record.message = message_of(outcome);
+      record.message = message_of(outcome, job.model);
     }
     write_text(job.paths.log, outcome.printed);
     if (record.outcome == Outcome::done) make_thumbnail(job, results.path());

@@ -288,14 +288,15 @@ struct BatchCommand {
     }
     const fs::path page = fs::path(output) / "summary.html";
     if (!is_quiet)
-      std::cout << fmt::format("{} of {} done, {} in this run; {}\n", counted(counts.done, "model", "models"),
-                               rows.size(), in_this_run, printable(page.string()));
+      std::cout << fmt::format("{} of {} are done, {} in this run; {}\n", counts.done,
+                               counted(rows.size(), "model", "models"), in_this_run,
+                               printable(page.string()));
     require_stdout_written();
     if (is_all) return;
     throw Error(
         counts.done > 0 ? kSomeNotDone : kNoneDone,
-        fmt::format("{} of {} could not be hollowed", counted(counts.not_done, "model", "models"),
-                    rows.size()),
+        fmt::format("{} of {} could not be hollowed", counts.not_done,
+                    counted(rows.size(), "model", "models")),
         fmt::format("{} has the reasons; they are tried again when something changed, or with --retry-failed",
                     page.string()));
   }
