@@ -87,7 +87,7 @@ Image image_in(std::string_view bytes) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   const auto refuse = [&]() {
-    const InputError error(std::string("no picture: ") + png.message);
+    InputError error(std::string("no picture: ") + png.message);
     png_image_free(&png);
     return error;
   };

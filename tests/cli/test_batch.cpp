@@ -487,8 +487,9 @@ TEST(Batch, KilledAtAnyMomentItGoesOnWhereItWas) {
   }
   const ProcessResult last = run(command);
   EXPECT_EQ(last.exit_code, 0) << last.err;
-  EXPECT_TRUE(contains(last.out, "12 of 12 models are done, " +
-                                     std::to_string(expected.size() - before.size()) + " in this run"));
+  const std::string left = std::to_string(expected.size() - before.size());
+  EXPECT_TRUE(
+      contains(last.out, std::string("12 of 12 models are done, ").append(left).append(" in this run")));
   for (const auto& [name, bytes] : expected) EXPECT_EQ(batch.result(name), bytes) << name;
   for (const auto& [name, time] : before) EXPECT_EQ(known().at(name), time);
   EXPECT_EQ(temporary_files(batch.results()), std::vector<std::string>{});
