@@ -24,6 +24,7 @@
 #include "cli/hollow_forms.h"
 #include "cli/interrupt.h"
 #include "cli/numbers.h"
+#include "cli/process_options.h"
 #include "cli/terminal.h"
 #include "core/error.h"
 #include "core/listed.h"
@@ -109,7 +110,14 @@ class TakenOptions {
     if (!is_flag || rule.may_be_bare) added->type_name(option.get_type_name());
     if (!is_flag) added->default_str(option.get_default_str());
     added->group(option.get_group());
+    if (rule.name == "process") added->check(CLI::Validator(list_if_asked, ""));
     options_.push_back(added);
+  }
+
+  // As 'aerate hollow' does, while the line is parsed.
+  static std::string list_if_asked(const std::string& process) {
+    if (process == "list") throw ProcessListRequest();
+    return {};
   }
 
   std::vector<OptionRule> rules_;
@@ -288,9 +296,9 @@ struct BatchCommand {
     }
     const fs::path page = fs::path(output) / "summary.html";
     if (!is_quiet)
-      std::cout << fmt::format("{} of {} are done, {} in this run; {}\n", counts.done,
-                               counted(rows.size(), "model", "models"), in_this_run,
-                               printable(page.string()));
+      std::cout << fmt::format("{} of {} {} done, {} in this run; {}\n", counts.done,
+                               counted(rows.size(), "model", "models"), rows.size() == 1 ? "is" : "are",
+                               in_this_run, printable(page.string()));
     require_stdout_written();
     if (is_all) return;
     throw Error(

@@ -372,6 +372,19 @@ TEST(Batch, OptionsThatContradictEachOtherAreRefusedOnceBeforeAnyIsBegun) {
   EXPECT_FALSE(fs::exists(batch.results()));
   EXPECT_EQ(batch.run({batch.models(), "--wall", "much"}).exit_code, kUsage);
   EXPECT_EQ(batch.run({batch.models(), "--no-such-option"}).exit_code, kUsage);
+  EXPECT_EQ(run({AERATE_EXECUTABLE, "batch", "--process", "list"}).out,
+            run({AERATE_EXECUTABLE, "hollow", "--process", "list"}).out);
+}
+
+TEST(Batch, OptionsMayStandInAConfigurationFile) {
+  const Batch batch;
+  const fs::path model = batch.block("a.stl"),
+                 config = batch.file("options.ini", "[batch]\nwall = 2.5\nprocess = \"sla\"\n");
+  ASSERT_EQ(batch.run({model, "--config", config, "--plugs"}).exit_code, 0);
+  EXPECT_EQ(Json::parse(batch.result("a-hollow.json")).at("limits").at("wall_mm"), 2.5);
+  EXPECT_TRUE(fs::exists(batch.results() / "a-hollow-plugs.stl"));
+  EXPECT_TRUE(contains(batch.run({model, "--wall", "2.5", "--process", "sla", "--plugs"}).out,
+                       "1 model is done, 0 in this run"));
 }
 
 TEST(Batch, NamesMayHoldSpacesLineFeedsAndAnyLetters) {
