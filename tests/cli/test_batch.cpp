@@ -12,6 +12,7 @@
 #include <string>
 #include <sys/file.h>
 #include <sys/mount.h>
+#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -106,6 +107,7 @@ void wait_until(const std::function<bool()>& is_so) {
 
 std::vector<std::string> temporary_files(const fs::path& folder) {
   std::vector<std::string> found;
+  if (!fs::exists(folder)) return found;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string name = entry.path().filename();
     if (name.find(".aerate-") != std::string::npos && name != ".aerate-batch") found.push_back(name);
@@ -168,7 +170,7 @@ TEST(Batch, AJobThatIsKilledIsARowThatIsTriedAgainOnlyWhenThatIsAskedFor) {
   const std::vector<std::string> arguments{batch.models(), "--jobs",      "1",  "--tolerance",
                                            "0.01",         "--max-voids", "500"};
   Process process(batch.command(arguments));
-  wait_until([&] { return !jobs_under_way(batch.folder()).empty(); });
+  wait_until([&] { return !temporary_files(batch.results()).empty(); });
   for (const pid_t job : jobs_under_way(batch.folder())) kill(job, SIGKILL);  // the largest is first
   EXPECT_EQ(process.wait().exit_code, kSomeNotDone);
   EXPECT_EQ(batch.row("quick.stl").at("outcome"), "done");
@@ -424,13 +426,32 @@ TEST(Batch, AFullDiskIsARowForWhatDoesNotFit) {
   umount(disk.c_str());
 }
 
+TEST(Batch, WhatKilledJobsLeftIsRemovedAndNothingElse) {
+  const Batch batch;
+  batch.block("a.stl");
+  const pid_t ended = fork();
+  if (ended == 0) _exit(0);
+  waitpid(ended, nullptr, 0);
+  const auto left = [&](const std::string& stem, pid_t process) {
+    const std::string name = "." + stem + ".aerate-" + std::to_string(process) + "-ab12.stl";
+    batch.file("outputs/" + name, "half");
+    return batch.results() / name;
+  };
+  const fs::path of_killed = left("a-hollow", ended), of_other = left("other", ended),
+                 of_living = left("a-hollow", getpid());
+  ASSERT_EQ(batch.run({batch.models()}).exit_code, 0);
+  EXPECT_FALSE(fs::exists(of_killed));
+  EXPECT_TRUE(fs::exists(of_other));
+  EXPECT_TRUE(fs::exists(of_living));
+}
+
 TEST(Batch, InterruptedItEndsItsJobsAndLeavesNothingHalfDone) {
   const Batch batch;
   batch.block("quick.stl");
   for (const char* name : {"slow.stl", "slower.stl"}) fs::copy(sample("bunny.stl"), batch.models() / name);
   const std::vector<std::string> arguments{batch.models(), "--tolerance", "0.01", "--max-voids", "500"};
   Process process(batch.command(arguments));
-  wait_until([&] { return !jobs_under_way(batch.folder()).empty(); });
+  wait_until([&] { return !temporary_files(batch.results()).empty(); });
   process.send(SIGINT);
   const ProcessResult result = process.wait();
   EXPECT_EQ(result.exit_code, kInterrupted) << result.err;
