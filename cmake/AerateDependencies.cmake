@@ -12,6 +12,7 @@ find_package(pugixml REQUIRED)
 find_package(EXPAT REQUIRED)
 find_package(PNG REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 
 # Not through libzip's own CMake files: Debian's refer to tools of three further packages.
 find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)

@@ -6,11 +6,13 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
+#include <mutex>
 #include <poll.h>
 #include <string_view>
 #include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
@@ -98,16 +100,24 @@ struct Start {
   ::_exit(1);
 }
 
+// Tells when a process has ended; negative where the system has no such descriptors (Linux before 5.3).
+int opened_process(pid_t process) {
+  return static_cast<int>(::syscall(SYS_pidfd_open, process, 0));
+}
+
 // Waits for the program, and ends it with all it started as soon as nobody holds the other end of `life`: the
 // process that wanted it is gone, be it by SIGKILL.
 [[noreturn]] void keep(pid_t program, int life, int report_to) {
   constexpr int kPollMilliseconds = 10;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(signal, SIG_IGN);
   KeeperReport report;
-  pollfd watched{life, POLLIN, 0};
+  const int end_of_program = opened_process(program);
+  std::array<pollfd, 2> watched{pollfd{life, POLLIN, 0},
+                                pollfd{end_of_program, POLLIN, 0}};  // poll skips negative ones
   for (;;) {
     if (::waitpid(program, &report.status, WNOHANG) == program) break;
-    if (::poll(&watched, 1, kPollMilliseconds) <= 0) continue;
+    ::poll(watched.data(), watched.size(), kPollMilliseconds);
+    if (watched[0].revents == 0) continue;
     ::kill(-program, SIGKILL);
     ::kill(program, SIGKILL);  // if it leads no group yet
     ::waitpid(program, &report.status, 0);
@@ -138,7 +148,9 @@ struct Start {
 // is ended, and whatever it started, when this object or this process ends.
 class RunningChild {
  public:
-  RunningChild(const Start& start, Monitor& monitor) : name_(start.arguments.front()), monitor_(monitor) {
+  RunningChild(const Start& start, Monitor& monitor,
+               const std::unique_lock<std::mutex>& /*one_at_a_time*/ = starting())
+      : name_(start.arguments.front()), monitor_(monitor) {
     keeper_ = ::fork();
     if (keeper_ == 0) become_keeper(start, life_, reports_);
     if (keeper_ < 0) throw cannot_be_run(errno);
@@ -165,6 +177,13 @@ class RunningChild {
   }
 
  private:
+  // Pipes are made and ends closed while no other thread forks: keepers have the ends of those only that were started before them, so that
+  // all see the end of this process, the last one first.
+  static std::unique_lock<std::mutex> starting() {
+    static std::mutex mutex;
+    return std::unique_lock(mutex);
+  }
+
   FailureError cannot_be_run(int error) const {
     return FailureError(name_ + ": cannot be run: " + std::generic_category().message(error));
   }

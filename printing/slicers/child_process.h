@@ -42,7 +42,7 @@ struct ChildOutcome {
 
 // Runs a program to its end. It reads one line "y" and then an end of file, should it ask a question. It
 // leads a process group, which is killed when the monitor interrupts or this process ends, however it does. Throws FailureError if it cannot be
-// started.
+// started. May be called by several threads, each with a folder of its own.
 ChildOutcome run_child(const ChildCommand& command, Monitor& monitor);
 
 }  // namespace aerate

@@ -31,6 +31,7 @@ constexpr const char* kFooter =
     "    3  unreadable input: missing, empty, truncated or not what it claims to be\n"
     "    4  a mesh that cannot be used: open, flat, without an inside\n"
     "    5  nothing to remove under these limits, or nothing saved by it\n"
+    "    6, 7  batch: some models are not done, none is\n"
     "  130  interrupted; no output was written";
 
 // CLI11's words for a line of a configuration file that it can make nothing of, in ours.
@@ -80,6 +81,7 @@ void run_command_line(int argc, const char* const* argv) {
   add_inspect_command(app, config);
   add_slice_command(app, config);
   add_hook_command(app, config);
+  add_batch_command(app, config);
   add_studio_command(app, config);
 
   try {

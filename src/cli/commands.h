@@ -18,6 +18,7 @@ void add_pack_command(CLI::App& app, const ConfigFile& config);
 void add_inspect_command(CLI::App& app, const ConfigFile& config);
 void add_slice_command(CLI::App& app, const ConfigFile& config);
 void add_hook_command(CLI::App& app, const ConfigFile& config);
+void add_batch_command(CLI::App& app, const ConfigFile& config);
 void add_studio_command(CLI::App& app, const ConfigFile& config);
 
 // The parser's message as an error of the program's own.
