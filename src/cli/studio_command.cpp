@@ -73,18 +73,17 @@ std::optional<std::uint64_t> parse_size(std::string_view text) {
   return static_cast<std::uint64_t>(*number * unit);
 }
 
-bool is_set(const char* name) {
+// Empty if it is not set.
+std::string environment(const char* name) {
   const char* const value = std::getenv(name);
-  return value != nullptr && *value != '\0';
+  return value != nullptr ? value : "";
 }
 
 // The program that opens a page, if there is somebody to look at it.
 std::optional<std::string> browser() {
-  if (is_set("BROWSER")) {
-    const std::string first = std::getenv("BROWSER");
-    return first.substr(0, first.find(':'));
-  }
-  if (is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")) return "xdg-open";
+  if (const std::string named = environment("BROWSER"); !named.empty())
+    return named.substr(0, named.find(':'));
+  if (!environment("DISPLAY").empty() || !environment("WAYLAND_DISPLAY").empty()) return "xdg-open";
   return std::nullopt;
 }
 
