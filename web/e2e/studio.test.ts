@@ -226,8 +226,17 @@ describe('what cannot be used', () => {
     await page.waitForSelector('#refused .trouble');
     const [what] = saidOf(open_);
     expect(words).toContain(what.replace(open_, 'open.off'));
-    expect(await page.textContent('#refused')).toContain('cannot be hollowed as it is');
+    const advice = (await page.textContent('#refused')) ?? '';
+    expect(advice).toContain('cannot be hollowed as it is');
+    expect(advice).not.toContain(what.slice(-40));
+    // Which fields help, and they do.
+    const hole = /"Surface: remesh" and "Largest hole to close: ([\d.]+)"/.exec(advice);
     expect(await page.isDisabled('#go')).toBe(true);
+    await openGroups(page);
+    await page.selectOption('#option-surface', 'remesh');
+    await page.fill('#option-max-hole', hole![1]);
+    await page.waitForFunction(() => document.getElementById('refused')?.textContent === '');
+    expect(await page.isEnabled('#go')).toBe(true);
     await page.click('[aria-label="Remove open.off"]');
     await page.context().close();
     allowRefusals('422');

@@ -1,6 +1,7 @@
 // A job: how far it is, or what came of it.
 import { make } from '../dom';
 import { raised } from '../figures';
+import { advised } from './advice';
 import { button, copyButton, download, trouble } from './pieces';
 import { isEnded, type Session } from './session';
 import type { Slot } from './slot';
@@ -74,7 +75,7 @@ function ended(session: Session, job: Job): HTMLElement {
     const head = make('div', { class: 'head' }, make('p', { class: 'done' }, took), downloads(session, job), make('div', { class: 'aside' }, again, remove));
     return make('div', { class: 'ended' }, head, ...notices(job));
   }
-  const words = job.state === 'stopped' ? make('p', {}, 'Stopped. Nothing was written.') : trouble(job.error ?? { what: 'the job failed' });
+  const words = job.state === 'stopped' ? make('p', {}, 'Stopped. Nothing was written.') : trouble(advised(job.error ?? { what: 'the job failed' }));
   return make('div', { class: 'ended nothing' }, make('h2', {}, job.state === 'stopped' ? 'Stopped' : 'Nothing was made'), words, ...notices(job), make('div', { class: 'aside' }, again, remove));
 }
 

@@ -1,6 +1,7 @@
 // Where models come in, and the list of those that are there.
 import { format } from '../colours';
 import { make } from '../dom';
+import { whyUnusable } from './advice';
 import { button, trouble } from './pieces';
 import type { Session } from './session';
 import { onChange, type Page, type Upload } from './store';
@@ -11,9 +12,6 @@ export function sizeOf({ report: { input } }: Model): string {
   const { lower_mm: lower, upper_mm: upper } = input.box;
   return `${upper.map((high, k) => format(high - lower[k], 1)).join(' × ')} mm`;
 }
-
-// What the command line says, after the word for what can be done with it: "none: ...".
-export const whyUnusable = ({ use }: Model): string => use.replace(/^none: /, '');
 
 export function showModels(into: HTMLElement, session: Session): void {
   const { store } = session;

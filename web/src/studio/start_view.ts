@@ -1,11 +1,12 @@
 // The estimate, the command line that does the same, and the button.
 import { make } from '../dom';
 import { raised } from '../figures';
+import { advised } from './advice';
 import { troubleOf, type Api } from './api';
 import { attempt, copyButton, trouble } from './pieces';
 import type { Session } from './session';
 import { modelChosen, type Page } from './store';
-import type { Estimate, Model, Trouble } from './told';
+import type { Estimate, Trouble } from './told';
 
 // Those that were asked for while others were waited for do not matter any more.
 class Estimates {
@@ -37,14 +38,6 @@ class Estimates {
   }
 }
 
-// What stands in the list of models already, word for word.
-const isKnown = ({ what }: Trouble, model: Model | null): boolean => model !== null && !model.usable && what === model.use;
-
-const kUnusable: Trouble = {
-  what: 'this model cannot be hollowed as it is',
-  hint: 'what is wrong is marked in it and said above; where meshing it anew can help, "Surface: remesh" is under "The model"',
-};
-
 export function showStart(into: HTMLElement, form: HTMLFormElement, session: Session): void {
   const { store, api } = session;
   const rows = make('dl', { id: 'estimate', 'aria-live': 'polite' });
@@ -63,7 +56,7 @@ export function showStart(into: HTMLElement, form: HTMLFormElement, session: Ses
     command.textContent = estimate?.command ?? '';
     line.hidden = !estimate;
     const model = modelChosen(store.now);
-    words.replaceChildren(...(refused ? [trouble(isKnown(refused, model) ? kUnusable : refused)] : []));
+    words.replaceChildren(...(refused ? [trouble(advised(refused, model))] : []));
     if (!model) words.replaceChildren(make('p', { class: 'note' }, 'Add a model, and what can be saved is estimated here.'));
     // Other refusals are not the job's own.
     go.disabled = !model || store.now.connection !== 'open' || refused?.exit !== undefined;
