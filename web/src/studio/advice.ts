@@ -18,6 +18,14 @@ function adviceOf({ hint = '' }: Trouble): string | null {
   return 'choose "Surface: remesh", under "The model"';
 }
 
+// The option that a refusal begins with: "--wall: ..." or "--min-radius 9 mm (command line) is ...".
+export const optionOf = ({ what }: Trouble): string | null => /^--([a-z][a-z-]*)/.exec(what)?.[1] ?? null;
+
+// With the title that the option has on this page.
+export function titled(refused: Trouble, title: string): Trouble {
+  return { ...refused, what: refused.what.replace(/^--[a-z-]+/, (option) => `${title} (${option})`) };
+}
+
 export function advised(refused: Trouble, model: Model | null = null): Trouble {
   const hint = adviceOf(refused);
   if (isKnown(refused, model))

@@ -2,7 +2,7 @@
 import { format } from '../colours';
 import { make } from '../dom';
 import { whyUnusable } from './advice';
-import { button, trouble } from './pieces';
+import { button, isWanted, trouble } from './pieces';
 import type { Session } from './session';
 import { onChange, type Page, type Upload } from './store';
 import type { Model } from './told';
@@ -58,7 +58,7 @@ function entry(model: Model, { chosen }: Page, session: Session): HTMLElement {
     make('span', { class: 'note' }, `${sizeOf(model)}, ${format(input.triangles)} triangles`),
   );
   choose.addEventListener('click', () => session.choose(model.id));
-  const remove = button('×', () => session.removeModel(model.id), `Remove ${model.name}`);
+  const remove = button('×', () => removeIfWanted(model, session), `Remove ${model.name}`);
   remove.classList.add('small');
   const item = make('li', { class: isChosen ? 'chosen-model' : '' }, choose, remove);
   if (isChosen || !model.usable) {
@@ -66,6 +66,13 @@ function entry(model: Model, { chosen }: Page, session: Session): HTMLElement {
     item.append(make('p', { class: `note use ${model.usable ? '' : 'bad'}` }, sentence(use)));
   }
   return item;
+}
+
+// Results that nobody has saved go with their model.
+async function removeIfWanted({ id, name }: Model, session: Session): Promise<void> {
+  const results = session.store.now.jobs.filter(({ model, state }) => model === id && state === 'done').length;
+  const what = results === 1 ? 'the result' : `the ${results} results`;
+  if (results === 0 || (await isWanted(`Remove ${name} and ${what} made of it?`, 'Remove'))) await session.removeModel(id);
 }
 
 // Bars are moved, not made anew: screen readers would begin again with each.

@@ -1,9 +1,11 @@
 // The estimate, the command line that does the same, and the button.
 import { make } from '../dom';
 import { raised } from '../figures';
-import { advised } from './advice';
+import { advised, optionOf, titled } from './advice';
 import { troubleOf, type Api } from './api';
+import { titleOf } from './fields';
 import { attempt, copyButton, trouble } from './pieces';
+import { kRefused } from './form_view';
 import type { Session } from './session';
 import { modelChosen, type Page } from './store';
 import type { Estimate, Trouble } from './told';
@@ -38,16 +40,35 @@ class Estimates {
   }
 }
 
+// How much of the window the bar hides, so that what has the focus is scrolled clear of it. One that would hide half of the
+// window does not stay.
+function tellHeight(bar: HTMLElement): void {
+  const tell = (): void => {
+    const height = Math.ceil(bar.getBoundingClientRect().height);
+    const stays = height <= window.innerHeight / 2;
+    bar.classList.toggle('stays', stays);
+    document.documentElement.style.setProperty('--hidden-below', `${stays ? height : 0}px`);
+  };
+  new ResizeObserver(tell).observe(bar);
+  window.addEventListener('resize', tell);
+}
+
 export function showStart(into: HTMLElement, form: HTMLFormElement, session: Session): void {
   const { store, api } = session;
   const rows = make('dl', { id: 'estimate', 'aria-live': 'polite' });
   const command = make('code', { id: 'command', tabindex: '0', 'aria-label': 'Command line' });
   const line = make('details', { class: 'command' }, make('summary', {}, 'The same on the command line'), command, copyButton('Copy', () => command.textContent ?? ''));
-  const words = make('div', { id: 'refused' });
+  const words = make('div', { id: kRefused });
   const go = make('button', { type: 'submit', id: 'go', class: 'go' }, 'Hollow it');
   const press = make('div', { class: 'press' }, go);
   into.append(rows, words, line, press);
+  tellHeight(into);
 
+  const inFields = (refused: Trouble): Trouble => {
+    const option = optionOf(refused);
+    const isField = store.now.told?.options.some(({ name }) => name === option) ?? false;
+    return option && isField ? titled(refused, titleOf(option)) : advised(refused, modelChosen(store.now));
+  };
   const estimates = new Estimates(api, (estimate, refused) => {
     into.removeAttribute('aria-busy');
     rows.replaceChildren(
@@ -56,7 +77,8 @@ export function showStart(into: HTMLElement, form: HTMLFormElement, session: Ses
     command.textContent = estimate?.command ?? '';
     line.hidden = !estimate;
     const model = modelChosen(store.now);
-    words.replaceChildren(...(refused ? [trouble(advised(refused, model))] : []));
+    words.replaceChildren(...(refused ? [trouble(inFields(refused))] : []));
+    store.set({ refused: refused && optionOf(refused) });
     if (!model) words.replaceChildren(make('p', { class: 'note' }, 'Add a model, and what can be saved is estimated here.'));
     // Other refusals are not the job's own.
     go.disabled = !model || store.now.connection !== 'open' || refused?.exit !== undefined;

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { advised } from '../../src/studio/advice';
+import { advised, optionOf, titled } from '../../src/studio/advice';
 import type { Model, Trouble } from '../../src/studio/told';
 
 // As the program says them.
@@ -46,4 +46,11 @@ it('says in full what does not stand in the list', () => {
   expect(advised(smaller, unusable(kOpen)).what).toBe(smaller.what);
   expect(advised(kOpen, { ...unusable(kOpen), usable: true }).what).toBe(kOpen.what);
   expect(advised(kTwisted)).toEqual(kTwisted);
+});
+
+it('knows the option that a refusal begins with, and gives it its title', () => {
+  const radius = { what: '--min-radius 9999 mm (command line) is more than --max-radius 25 mm (default of fdm)' };
+  expect([kWall, radius, kOpen].map(optionOf)).toEqual(['wall', 'min-radius', null]);
+  expect(titled(kWall, 'Wall')).toEqual({ ...kWall, what: 'Wall (--wall): -1 mm is too little (at least 0 mm)' });
+  expect(titled(radius, 'Smallest radius').what).toMatch(/^Smallest radius \(--min-radius\) 9999 mm .* --max-radius 25 mm/);
 });

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { entryOf, fieldOf, groupsOf, isAsked, kMain, valueOf, withValue } from '../../src/studio/fields';
+import { descriptionOf, entryOf, fieldOf, groupsOf, isAsked, kMain, valueOf, withValue } from '../../src/studio/fields';
 import type { OptionRow, Process } from '../../src/studio/told';
 
 const row = (name: string, kind: OptionRow['kind'], more: Partial<OptionRow> = {}): OptionRow => ({
@@ -30,6 +30,8 @@ it('takes what holds by default from the process, with its source, before what t
   expect(fieldOf(wall, undefined)).toMatchObject({ standard: '1.2', source: '' });
   expect(fieldOf(row('bridge', 'number'), kProcess).standard).toBe('none');
   expect(fieldOf(row('drain', 'flag', { off: true }), kProcess).standard).toBe('yes');
+  for (const name of ['target-saving', 'target-mass', 'target-density', 'max-voids', 'max-triangles']) expect(fieldOf(row(name, 'number'), kProcess).standard).toBe('none');
+  expect(fieldOf(row('material', 'text'), kProcess).standard).toBe('resin');
   expect(fieldOf(row('some-new-thing', 'text'), kProcess)).toMatchObject({ title: 'Some new thing', standard: '' });
 });
 
@@ -70,4 +72,14 @@ it('shows again what was given', () => {
   expect(entryOf(['bottom', 'left'])).toBe('bottom\nleft');
   expect(withValue({ wall: '2' }, 'gap', '1')).toEqual({ wall: '2', gap: '1' });
   expect(withValue({ wall: '2', gap: '1' }, 'gap', null)).toEqual({ wall: '2' });
+});
+
+it('tells what an option does for the process that is chosen', () => {
+  const tell = (name: string, description: string, unit = 'mm') => descriptionOf(row(name, 'number', { unit, description }), kProcess);
+  expect(tell('wall', 'Least thickness (default of the process, here of fdm)')).toBe('Least thickness (default 2 mm, of sla)');
+  expect(tell('bridge', 'Ceiling (default of the process; none for sla and sls; there are both)')).toBe('Ceiling (no default of sla; there are both)');
+  expect(tell('drain', 'Join voids (default of the process: sla, sls and metal drain, fdm does not)', '')).toBe('Join voids (default yes, of sla)');
+  expect(tell('material', 'For mass (default of the process; fdm: PLA)', '')).toBe('For mass (default resin, of sla)');
+  expect(tell('keep-solid', 'Stays: a mesh file, a modifier\'s name in a 3MF project, box:X; may be repeated')).toBe('Stays: box:X; one on a line');
+  expect(tell('gap', 'Between two voids')).toBe('Between two voids');
 });
