@@ -224,8 +224,9 @@ describe('jobs', () => {
     await page.click('#tab-comparison');
     await page.waitForSelector('.comparison');
     await other.click('.head button:has-text("Remove")');
-    await page.waitForSelector(kShown('models'));
-    expect(await page.locator('#tab-comparison').count()).toBe(0);
+    await page.waitForSelector('#tab-comparison', { state: 'detached' });
+    await page.waitForSelector('#view > .slot[data-ready^=models]');
+    expect(await page.locator('.comparison').count()).toBe(0);
     await remove(page, 'bunny.stl');
     await page.context().close();
   });
@@ -370,22 +371,23 @@ describe('the page', () => {
       const page = await open({ ...kCoarse, viewport });
       await send(page);
       await openGroups(page);
-      await page.waitForSelector('#estimate dd');
+      await page.waitForSelector('#start:not([aria-busy]) #estimate dd');
       await page.focus('#drop');
       const hidden: string[] = [];
       let stops = 0;
       for (let isIn = true; isIn; ++stops) {
         await page.keyboard.press('Tab');
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
         const at = await page.evaluate(() => {
           const element = document.activeElement!;
           const bar = document.getElementById('start')!;
           const { top, bottom } = element.getBoundingClientRect();
           const end = bar.contains(element) || !bar.classList.contains('stays') ? window.innerHeight : bar.getBoundingClientRect().top;
           const name = element.id || element.getAttribute('aria-label') || element.textContent;
-          return { isIn: document.getElementById('setup')!.contains(element), name, isSeen: top >= -1 && bottom <= end + 1 };
+          return { isIn: document.getElementById('setup')!.contains(element), name, isSeen: top >= -1 && bottom <= end + 1, where: [top, bottom, end].map(Math.round).join(' ') };
         });
         isIn = at.isIn;
-        if (isIn && !at.isSeen) hidden.push(at.name ?? '');
+        if (isIn && !at.isSeen) hidden.push(`${at.name}: ${at.where}`);
       }
       expect(hidden).toEqual([]);
       expect(stops).toBeGreaterThan(50);

@@ -42,15 +42,23 @@ class Estimates {
 
 // How much of the window the bar hides, so that what has the focus is scrolled clear of it. One that would hide half of the
 // window does not stay.
-function tellHeight(bar: HTMLElement): void {
+function keepClearOf(bar: HTMLElement, form: HTMLElement): void {
+  const clear = (): void => {
+    const focused = document.activeElement;
+    if (!focused || bar.contains(focused) || !form.contains(focused)) return;
+    // What a pointer has pressed must not move away from it.
+    if (focused.matches(':focus-visible')) focused.scrollIntoView({ block: 'nearest' });
+  };
   const tell = (): void => {
     const height = Math.ceil(bar.getBoundingClientRect().height);
     const stays = height <= window.innerHeight / 2;
     bar.classList.toggle('stays', stays);
     document.documentElement.style.setProperty('--hidden-below', `${stays ? height : 0}px`);
+    clear(); // what it says may grow over the field that it is about
   };
   new ResizeObserver(tell).observe(bar);
   window.addEventListener('resize', tell);
+  form.addEventListener('focusin', clear); // browsers scroll to the first line of a field of several
 }
 
 export function showStart(into: HTMLElement, form: HTMLFormElement, session: Session): void {
@@ -62,7 +70,7 @@ export function showStart(into: HTMLElement, form: HTMLFormElement, session: Ses
   const go = make('button', { type: 'submit', id: 'go', class: 'go' }, 'Hollow it');
   const press = make('div', { class: 'press' }, go);
   into.append(rows, words, line, press);
-  tellHeight(into);
+  keepClearOf(into, form);
 
   const inFields = (refused: Trouble): Trouble => {
     const option = optionOf(refused);
