@@ -64,7 +64,7 @@ export function fieldOf(row: OptionRow, process: Process | undefined): Field {
   if (row.name === 'drain' && process) return { ...field, standard: process.drains ? 'yes' : 'no', source: '' };
   if (row.name === 'material' && process) return { ...field, standard: process.material, source: '' };
   if (!limit) return { ...field, standard: row.default ?? (kUnlimited.includes(row.name) ? 'none' : ''), source: '' };
-  return { ...field, standard: String(limit.value ?? 'none'), source: limit.source ?? '' };
+  return { ...field, standard: String(limit.value ?? (row.name === 'cell-size' ? '' : 'none')), source: limit.source ?? '' };
 }
 
 // What the command line alone can do, or says in another way here.
@@ -82,7 +82,8 @@ export function descriptionOf(row: OptionRow, process: Process | undefined): str
   const { standard, unit } = fieldOf(row, process);
   const isKnown = process.rows.some(({ option, value }) => option === row.name && value !== null) || row.name === 'material' || row.name === 'drain';
   const value = isKnown ? `default ${[standard, unit].filter(Boolean).join(' ')}, of ${process.name}` : `no default of ${process.name}`;
-  return text.replace(/default of the process((, here of|;|:) (none for )?(fdm|sla|sls|metal)\b[^;)]*)?/, value).replace(/; \d+ for sla and sls/, '');
+  const told = isKnown ? text.replace(/, \d+ where it has none/, '') : text.replace(/default of the process, (\d+) where it has none/, 'default $1');
+  return told.replace(/default of the process((, here of|;|:) (none for )?(fdm|sla|sls|metal)\b[^;)]*)?/, value).replace(/; \d+ for sla and sls/, '');
 }
 
 export const isAsked = ({ name }: OptionRow): boolean => name !== 'process';

@@ -20,6 +20,7 @@ const kProcess: Process = {
   rows: [
     { option: 'wall', name: 'wall', value: 2, unit: 'mm', source: 'a guide' },
     { option: 'bridge', name: 'bridge', value: null, unit: 'mm', source: null },
+    { option: 'cell-size', name: 'cell-size', value: 33, unit: 'mm', source: null },
     { option: null, name: 'least-wall', value: 0.5, unit: 'mm', source: 'another guide' },
   ],
 };
@@ -81,5 +82,10 @@ it('tells what an option does for the process that is chosen', () => {
   expect(tell('drain', 'Join voids (default of the process: sla, sls and metal drain, fdm does not)', '')).toBe('Join voids (default yes, of sla)');
   expect(tell('material', 'For mass (default of the process; fdm: PLA)', '')).toBe('For mass (default resin, of sla)');
   expect(tell('keep-solid', 'Stays: a mesh file, a modifier\'s name in a 3MF project, box:X; may be repeated')).toBe('Stays: box:X; one on a line');
+  const cells = 'Apart (default of the process, 21 where it has none, or what --max-radius gives; 33 for sla and sls); half';
+  expect(tell('cell-size', cells)).toBe('Apart (default 33 mm, of sla, or what --max-radius gives); half');
+  const none = { ...kProcess, name: 'fdm', rows: [{ option: 'cell-size', name: 'cell-size', value: null, unit: 'mm', source: null }] };
+  expect(descriptionOf(row('cell-size', 'number', { description: cells }), none)).toBe('Apart (default 21, or what --max-radius gives); half');
+  expect(fieldOf(row('cell-size', 'number'), none).standard).toBe('');
   expect(tell('gap', 'Between two voids')).toBe('Between two voids');
 });
