@@ -218,11 +218,25 @@ describe('jobs', () => {
     const page = await open();
     await send(page);
     await openGroups(page);
+    await page.fill('#option-scale', '0.8');
     await hollow(page);
     await page.waitForSelector(kShown('jobs'));
     const other = await openIn(await page.context().newPage());
     await page.click('#tab-comparison');
     await page.waitForSelector('.comparison');
+    // The solid of the figures is as large as the job's, the one that is shown as it was read; both are as large in the picture.
+    expect(await page.textContent('.comparison thead th')).toBe('Solid, 64.6 × 49.4 × 64.8 mm');
+    expect(await page.textContent('[aria-label=Left] option')).toBe('Solid as it was read, 80.8 × 61.8 × 81 mm');
+    await page.waitForFunction(() => document.querySelectorAll('.side .slot[data-ready]').length === 2);
+    const wide = await page.evaluate(() => {
+      const across = (side: string): number => {
+        const { project, centre, size } = window.aerateStudio![side]!;
+        const [a, b] = [-0.5, 0.5].map((k) => project([centre[0], centre[1], centre[2] + k * size[2]]));
+        return Math.hypot(a[0] - b[0], a[1] - b[1]);
+      };
+      return ['left-', 'right-'].map(across);
+    });
+    expect(Math.abs(wide[0] / wide[1] - 1)).toBeLessThan(0.03);
     await other.click('.head button:has-text("Remove")');
     await page.waitForSelector('#tab-comparison', { state: 'detached' });
     await page.waitForSelector('#view > .slot[data-ready^=models]');

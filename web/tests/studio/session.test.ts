@@ -71,6 +71,25 @@ it('forgets what was removed before the events began, and keeps what came since'
   expect(ids(store.now.jobs)).toEqual(['j1', 'j4']);
 });
 
+it('keeps a job that is told of while it asks once more what is there', async () => {
+  const all = told([model('m1')], [job('j1', 'm1')]);
+  let answer: (state: Told) => void = () => {};
+  let asked = 0;
+  const api = {
+    state: () => (++asked === 1 ? Promise.resolve(all) : new Promise<Told>((done) => (answer = done))),
+    listen: (onEvent: (event: ServerEvent) => void, onOpen: () => void) => {
+      onOpen();
+      onEvent({ name: 'job', data: JSON.stringify(job('j2', 'm1', 'waiting')) });
+      return new Promise<void>(() => {});
+    },
+  };
+  const store = new Store();
+  void new Session(api as unknown as Api, store).run();
+  await vi.waitFor(() => expect(asked).toBe(2));
+  answer({ ...all, jobs: [] });
+  await vi.waitFor(() => expect(ids(store.now.jobs)).toEqual(['j2']));
+});
+
 it('removes a model by one request, and forgets what was made of it', async () => {
   const { session, store, removed } = await opened(told([model('m1'), model('m2')], [job('j1', 'm1'), job('j2', 'm2')]));
   store.set({ chosen: 'm1' });
