@@ -80,6 +80,14 @@ async function hollow(page: Page): Promise<void> {
   await page.click('#go');
 }
 
+// Results are asked about first.
+async function remove(page: Page, name: string): Promise<void> {
+  await page.click(`[aria-label="Remove ${name}"]`);
+  const question = page.locator('dialog');
+  if (await question.isVisible()) await question.locator('button:has-text("Remove")').click();
+  await page.waitForFunction((label) => !document.querySelector(`[aria-label="${label}"]`), `Remove ${name}`);
+}
+
 async function openGroups(page: Page): Promise<void> {
   await page.evaluate(() => document.querySelectorAll('details.group').forEach((group) => group.setAttribute('open', '')));
 }
@@ -168,8 +176,17 @@ describe('a model', () => {
     expect(await page.isChecked('#left-panel input[name=axis][value=z]')).toBe(true);
   });
 
-  it('is removed with all that was made of it', async () => {
+  it('is removed with all that was made of it, if that is wanted', async () => {
     await page.click('[aria-label="Remove bunny.stl"]');
+    expect(await page.textContent('dialog')).toContain('the 2 results made of it');
+    await page.keyboard.press('Escape');
+    await page.waitForSelector('dialog', { state: 'detached' });
+    await page.click('[aria-label="Remove bunny.stl"]');
+    expect(await page.evaluate(() => document.activeElement?.textContent)).toBe('Keep');
+    await page.keyboard.press('Enter');
+    await page.waitForSelector('dialog', { state: 'detached' });
+    expect(await page.locator('#tabs button').count()).toBe(4);
+    await remove(page, 'bunny.stl');
     await page.waitForSelector('text=Use less material');
     expect(await page.locator('#tabs button').count()).toBe(0);
   });
@@ -193,7 +210,38 @@ describe('jobs', () => {
     await openGroups(page);
     await hollow(page);
     await page.waitForSelector(kShown('jobs'));
-    await page.click('[aria-label="Remove bunny.stl"]');
+    await remove(page, 'bunny.stl');
+    await page.context().close();
+  });
+
+  it('are not compared any more once another tab has removed them', async () => {
+    const page = await open();
+    await send(page);
+    await openGroups(page);
+    await page.fill('#option-scale', '0.8');
+    await hollow(page);
+    await page.waitForSelector(kShown('jobs'));
+    const other = await openIn(await page.context().newPage());
+    await page.click('#tab-comparison');
+    await page.waitForSelector('.comparison');
+    // The solid of the figures is as large as the job's, the one that is shown as it was read; both are as large in the picture.
+    expect(await page.textContent('.comparison thead th')).toBe('Solid, 64.6 × 49.4 × 64.8 mm');
+    expect(await page.textContent('[aria-label=Left] option')).toBe('Solid as it was read, 80.8 × 61.8 × 81 mm');
+    await page.waitForFunction(() => document.querySelectorAll('.side .slot[data-ready]').length === 2);
+    const wide = await page.evaluate(() => {
+      const across = (side: string): number => {
+        const { project, centre, size } = window.aerateStudio![side]!;
+        const [a, b] = [-0.5, 0.5].map((k) => project([centre[0], centre[1], centre[2] + k * size[2]]));
+        return Math.hypot(a[0] - b[0], a[1] - b[1]);
+      };
+      return ['left-', 'right-'].map(across);
+    });
+    expect(Math.abs(wide[0] / wide[1] - 1)).toBeLessThan(0.03);
+    await other.click('.head button:has-text("Remove")');
+    await page.waitForSelector('#tab-comparison', { state: 'detached' });
+    await page.waitForSelector('#view > .slot[data-ready^=models]');
+    expect(await page.locator('.comparison').count()).toBe(0);
+    await remove(page, 'bunny.stl');
     await page.context().close();
   });
 
@@ -204,10 +252,20 @@ describe('jobs', () => {
     await page.waitForSelector('#refused .trouble');
     expect(await page.textContent('#refused')).toContain('--wall');
     expect(await page.isDisabled('#go')).toBe(true);
+    expect(await page.getAttribute('#option-wall', 'aria-invalid')).toBe('true');
+    // A field in a group that is closed is brought to light.
+    await openGroups(page);
     await page.fill('#option-wall', '');
+    await page.fill('#option-min-radius', '9999');
+    await page.evaluate(() => document.querySelectorAll('details.group').forEach((group) => group.removeAttribute('open')));
+    await page.waitForSelector('#option-min-radius[aria-invalid=true][aria-describedby=refused]');
+    expect(await page.textContent('#refused')).toContain('Smallest radius (--min-radius) 9999 mm');
+    expect(await page.isVisible('#option-min-radius')).toBe(true);
+    expect(await page.getAttribute('#option-wall', 'aria-invalid')).toBeNull();
+    await page.fill('#option-min-radius', '');
     await page.waitForSelector('#estimate dd');
     expect(await page.isEnabled('#go')).toBe(true);
-    await page.click('[aria-label="Remove bunny.stl"]');
+    await remove(page, 'bunny.stl');
     await page.context().close();
     allowRefusals('422');
   });
@@ -226,9 +284,18 @@ describe('what cannot be used', () => {
     await page.waitForSelector('#refused .trouble');
     const [what] = saidOf(open_);
     expect(words).toContain(what.replace(open_, 'open.off'));
-    expect(await page.textContent('#refused')).toContain('cannot be hollowed as it is');
+    const advice = (await page.textContent('#refused')) ?? '';
+    expect(advice).toContain('cannot be hollowed as it is');
+    expect(advice).not.toContain(what.slice(-40));
+    // Which fields help, and they do.
+    const hole = /"Surface: remesh" and "Largest hole to close: ([\d.]+)"/.exec(advice);
     expect(await page.isDisabled('#go')).toBe(true);
-    await page.click('[aria-label="Remove open.off"]');
+    await openGroups(page);
+    await page.selectOption('#option-surface', 'remesh');
+    await page.fill('#option-max-hole', hole![1]);
+    await page.waitForFunction(() => document.getElementById('refused')?.textContent === '');
+    expect(await page.isEnabled('#go')).toBe(true);
+    await remove(page, 'open.off');
     await page.context().close();
     allowRefusals('422');
   });
@@ -273,9 +340,22 @@ describe('the page', () => {
 
   it('says when the program has gone, and goes on when it is there again', async () => {
     const first = await Program.start();
-    const page = await open(kCoarse, first.address);
+    const page = await open({ ...kCoarse, viewport: { width: 360, height: 640 } }, first.address);
+    await send(page);
+    await page.check('input[name=choice-as][value=modifiers]');
+    await page.click('#go');
+    await page.waitForSelector('.stages li');
     await first.end();
-    await page.waitForSelector('text=The program does not answer');
+    await page.waitForSelector('#connection:has-text("The program does not answer")');
+    // However far down somebody looks.
+    await page.evaluate(() => window.scrollTo(0, document.body.scrollHeight));
+    const banner = await page.evaluate(() => document.getElementById('connection')!.getBoundingClientRect().toJSON() as DOMRect);
+    expect(await page.evaluate(() => window.scrollY)).toBeGreaterThan(200);
+    expect(banner.top).toBeGreaterThanOrEqual(0);
+    expect(banner.bottom).toBeLessThan(200);
+    expect(await page.isVisible('.progress progress')).toBe(false);
+    expect(await page.isVisible('.progress button')).toBe(false);
+    expect(await page.textContent('.progress [role=status]')).toContain('does not answer');
     const again = await Program.start('--port', first.port);
     // It has another token, which this page cannot know.
     await page.waitForSelector('text=needs the address that the program printed');
@@ -295,7 +375,37 @@ describe('the page', () => {
       await page.waitForSelector('#estimate dd');
       expect(await unreadable(page, '#bar, #setup, #tabs, .panel')).toEqual([]);
       expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(options.colorScheme === 'dark' ? 390 : 1100);
-      await page.click('[aria-label="Remove bunny.stl"]');
+      await remove(page, 'bunny.stl');
+      await page.context().close();
+    }
+  });
+
+  it('shows what has the focus, in windows that are small too', async () => {
+    for (const viewport of [{ width: 360, height: 640 }, { width: 1100, height: 600 }]) {
+      const page = await open({ ...kCoarse, viewport });
+      await send(page);
+      await openGroups(page);
+      await page.waitForSelector('#start:not([aria-busy]) #estimate dd');
+      await page.focus('#drop');
+      const hidden: string[] = [];
+      let stops = 0;
+      for (let isIn = true; isIn; ++stops) {
+        await page.keyboard.press('Tab');
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
+        const at = await page.evaluate(() => {
+          const element = document.activeElement!;
+          const bar = document.getElementById('start')!;
+          const { top, bottom } = element.getBoundingClientRect();
+          const end = bar.contains(element) || !bar.classList.contains('stays') ? window.innerHeight : bar.getBoundingClientRect().top;
+          const name = element.id || element.getAttribute('aria-label') || element.textContent;
+          return { isIn: document.getElementById('setup')!.contains(element), name, isSeen: top >= -1 && bottom <= end + 1, where: [top, bottom, end].map(Math.round).join(' ') };
+        });
+        isIn = at.isIn;
+        if (isIn && !at.isSeen) hidden.push(`${at.name}: ${at.where}`);
+      }
+      expect(hidden).toEqual([]);
+      expect(stops).toBeGreaterThan(50);
+      await remove(page, 'bunny.stl');
       await page.context().close();
     }
   });
@@ -315,7 +425,7 @@ describe('the page', () => {
     await page.keyboard.press('ArrowLeft');
     await page.waitForSelector(kShown('models'));
     expect(await page.evaluate(() => document.activeElement?.textContent)).toBe('Model');
-    await page.click('[aria-label="Remove bunny.stl"]');
+    await remove(page, 'bunny.stl');
     await page.context().close();
   });
 });

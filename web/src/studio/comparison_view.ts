@@ -1,8 +1,9 @@
 // The solid, voids and modifiers: their figures in one table, two of them beside each other, seen from the same place and cut
 // at the same place.
 import { make } from '../dom';
+import type { Vec3 } from '../scene';
 import type { Viewer } from '../viewer';
-import { compare, type Comparison, type Done } from './comparison';
+import { compare, kSolid, type Comparison, type Done } from './comparison';
 import { attempt, button, trouble } from './pieces';
 import { troubleOf } from './api';
 import { isEnded, type Session } from './session';
@@ -16,7 +17,7 @@ function tableOf({ columns, rows }: Comparison): HTMLElement {
   const body = rows.map(({ name, cells, best }) =>
     make('tr', {}, make('th', { scope: 'row' }, name), ...cells.map((cell, i) => make('td', best.includes(i) ? { class: 'best' } : {}, cell))),
   );
-  const caption = make('caption', {}, 'The least of a row is bold; changes are from the solid');
+  const caption = make('caption', {}, 'The least of a row is bold; changes are from the solid of the same size');
   return make('table', { class: 'comparison' }, caption, make('thead', {}, make('tr', {}, ...head)), make('tbody', {}, ...body));
 }
 
@@ -28,7 +29,7 @@ function link(slots: readonly [Slot, Slot]): void {
     leader.onMoved = () => {
       const { cut, cutAlone, outer } = leader.state();
       other.set({ cut: shareIn(leader, other, cut), cutAlone, outer });
-      other.lookAs(leader.view());
+      other.lookAs(viewIn(leader, other));
     };
   };
   follow(left, right);
@@ -37,12 +38,29 @@ function link(slots: readonly [Slot, Slot]): void {
   (left.state().cut.axis ? left : right).onMoved?.();
 }
 
-// The same place in mm: their boxes may differ a little.
+const longest = ({ size }: Viewer): number => Math.max(...size);
+
+// How much larger one is than the other, where that is more than what hollowing may do to a box.
+function growth(leader: Viewer, other: Viewer): number | null {
+  const isOther = other.size.some((side, k) => Math.abs(side / leader.size[k] - 1) > 0.01);
+  return isOther ? longest(other) / longest(leader) : null;
+}
+
+// The same place in mm: their boxes may differ a little. Where one was scaled, the same share.
 function shareIn(leader: Viewer, other: Viewer, cut: ReturnType<Viewer['state']>['cut']): typeof cut {
   const k = cut.axis ? 'xyz'.indexOf(cut.axis) : -1;
-  if (k < 0) return cut;
+  if (k < 0 || growth(leader, other) !== null) return cut;
   const place = leader.centre[k] + (cut.share - 0.5) * leader.size[k];
   return { ...cut, share: Math.min(Math.max((place - other.centre[k]) / other.size[k] + 0.5, 0), 1) };
+}
+
+// From the same place, or as large in the picture where one was scaled.
+function viewIn(leader: Viewer, other: Viewer): ReturnType<Viewer['view']> {
+  const view = leader.view();
+  const by = growth(leader, other);
+  if (by === null) return view;
+  const place = (at: Vec3): Vec3 => [0, 1, 2].map((k) => other.centre[k] + by * (at[k] - leader.centre[k])) as unknown as Vec3;
+  return { from: place(view.from), at: place(view.at) };
 }
 
 export class ComparisonView {
@@ -105,15 +123,15 @@ export class ComparisonView {
     }
   }
 
-  private fillChoosers(model: Model, { columns }: Comparison): void {
-    const last = columns.length - 1;
+  private fillChoosers(model: Model, { sides }: Comparison): void {
+    const last = sides.length - 1;
     // The two that were made last, or the solid and what was made, until others are chosen.
     const first = [Math.max(last - 1, 0), last];
     this.choosers.forEach((chooser, i) => {
       const old = chooser.value;
-      const isKept = chooser.dataset.chosen === model.id && columns.some(({ id }) => id === old);
-      chooser.replaceChildren(...columns.map(({ id, title }) => make('option', { value: id }, title)));
-      chooser.value = isKept ? old : columns[first[i]].id;
+      const isKept = chooser.dataset.chosen === model.id && sides.some(({ id }) => id === old);
+      chooser.replaceChildren(...sides.map(({ id, title }) => make('option', { value: id }, title)));
+      chooser.value = isKept ? old : sides[first[i]].id;
       chooser.dataset.model = model.id;
       this.showSide(i);
     });
@@ -122,7 +140,7 @@ export class ComparisonView {
   private showSide(i: number): void {
     const chooser = this.choosers[i];
     const id = chooser.value;
-    this.slots[i].show(id === 'solid' ? `models/${chooser.dataset.model}/scene` : `jobs/${id}/scene`);
+    this.slots[i].show(id === kSolid ? `models/${chooser.dataset.model}/scene` : `jobs/${id}/scene`);
   }
 
   // One press makes the other form, with the same options.

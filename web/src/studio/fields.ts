@@ -47,10 +47,13 @@ const kTitles: Readonly<Record<string, string>> = {
   force: 'Make it even if heavier',
 };
 
+// Where nothing holds unless it is given, and nothing is chosen by the model either.
+const kUnlimited: readonly string[] = ['target-mass', 'target-saving', 'target-density', 'max-voids', 'max-triangles'];
+
 // What is asked first; the rest waits in groups.
 export const kMain: readonly string[] = ['as', 'shape', 'wall', 'gap', 'drain', 'infill'];
 
-function titleOf(name: string): string {
+export function titleOf(name: string): string {
   const words = name.replaceAll('-', ' ');
   return kTitles[name] ?? words[0].toUpperCase() + words.slice(1);
 }
@@ -59,8 +62,28 @@ export function fieldOf(row: OptionRow, process: Process | undefined): Field {
   const limit = process?.rows.find(({ option }) => option === row.name);
   const field = { row, title: titleOf(row.name), unit: row.unit || limit?.unit || '' };
   if (row.name === 'drain' && process) return { ...field, standard: process.drains ? 'yes' : 'no', source: '' };
-  if (!limit) return { ...field, standard: row.default ?? '', source: '' };
-  return { ...field, standard: String(limit.value ?? 'none'), source: limit.source ?? '' };
+  if (row.name === 'material' && process) return { ...field, standard: process.material, source: '' };
+  if (!limit) return { ...field, standard: row.default ?? (kUnlimited.includes(row.name) ? 'none' : ''), source: '' };
+  return { ...field, standard: String(limit.value ?? (row.name === 'cell-size' ? '' : 'none')), source: limit.source ?? '' };
+}
+
+// What the command line alone can do, or says in another way here.
+const kElsewhere: readonly (readonly [RegExp, string])[] = [
+  [/, --spheres or (?=--)/, ' or '],
+  [/a mesh file, a modifier's name in a 3MF project, /, ''],
+  [/; may be repeated/, '; one on a line'],
+  [/ \(write --up=-z\)/, ''],
+];
+
+// The help of the command line, for the process that is chosen.
+export function descriptionOf(row: OptionRow, process: Process | undefined): string {
+  const text = kElsewhere.reduce((words, [old, here]) => words.replace(old, here), row.description);
+  if (!process) return text;
+  const { standard, unit } = fieldOf(row, process);
+  const isKnown = process.rows.some(({ option, value }) => option === row.name && value !== null) || row.name === 'material' || row.name === 'drain';
+  const value = isKnown ? `default ${[standard, unit].filter(Boolean).join(' ')}, of ${process.name}` : `no default of ${process.name}`;
+  const told = isKnown ? text.replace(/, \d+ where it has none/, '') : text.replace(/default of the process, (\d+) where it has none/, 'default $1');
+  return told.replace(/default of the process((, here of|;|:) (none for )?(fdm|sla|sls|metal)\b[^;)]*)?/, value).replace(/; \d+ for sla and sls/, '');
 }
 
 export const isAsked = ({ name }: OptionRow): boolean => name !== 'process';

@@ -1,10 +1,13 @@
 // The form of a job's options: the process, what is asked first, and groups of the rest that open.
 import { make } from '../dom';
 import { raised } from '../figures';
-import { entryOf, fieldOf, groupsOf, kMain, valueOf, withValue, type Field } from './fields';
+import { descriptionOf, entryOf, fieldOf, groupsOf, kMain, valueOf, withValue, type Field } from './fields';
 import { onChange, type Page, type Store } from './store';
 import type { OptionRow, Options, Process, Told } from './told';
 import { sentence } from './words';
+
+// Id of what says why a value is refused.
+export const kRefused = 'refused';
 
 interface Entry {
   readonly element: HTMLElement;
@@ -42,6 +45,22 @@ export function showForm(into: HTMLElement, store: Store): void {
     ),
   );
   store.listen(onChange((page) => page.options, show));
+  store.listen(onChange((page) => page.refused, ({ refused }) => markRefused(form, refused)));
+}
+
+// Ties what is refused to its field, and brings that to light.
+function markRefused(form: HTMLElement, option: string | null): void {
+  for (const field of form.querySelectorAll<HTMLElement>('[data-option]')) {
+    const isRefused = field.dataset.option === option;
+    field.classList.toggle('refused', isRefused);
+    for (const input of field.querySelectorAll('input, select, textarea')) {
+      if (isRefused) input.setAttribute('aria-describedby', kRefused);
+      else input.removeAttribute('aria-describedby');
+      if (isRefused && input.getAttribute('type') !== 'radio') input.setAttribute('aria-invalid', 'true');
+      else input.removeAttribute('aria-invalid');
+    }
+    if (isRefused) field.closest('details')?.setAttribute('open', '');
+  }
 }
 
 function makeEntries(form: HTMLElement, told: Told, set: Set): readonly Entry[] {
@@ -89,7 +108,7 @@ function processChoice(told: Told, set: Set): Entry {
   );
   const element = make(
     'fieldset',
-    { class: 'process' },
+    { class: 'process', 'data-option': 'process' },
     make('legend', {}, 'Process'),
     make('div', { class: 'choice' }, ...inputs.map(({ label }) => label)),
     about,
@@ -134,9 +153,9 @@ function makeEntry(row: OptionRow, set: Set, tellsSource: boolean): Entry {
   const field = fieldOf(row, undefined);
   const put = (entry: string): void => set(row.name, entry);
   const control = kWords[row.name] ? buttons(row, field, put) : row.kind === 'flag' && !row.off ? box(row, field, put) : input(row, put);
-  const about = make('p', { class: 'note about', id: `${id}-about`, hidden: '' }, sentence(row.description));
-  const option = make('code', {}, `--${row.name}`);
-  about.append(' ', option);
+  const about = make('p', { class: 'note about', id: `${id}-about`, hidden: '' });
+  const help = make('span');
+  about.append(help, ' ', make('code', {}, `--${row.name}`));
   const ask = make('button', { type: 'button', class: 'ask', 'aria-expanded': 'false', 'aria-controls': about.id, 'aria-label': `About ${field.title}` }, '?');
   ask.addEventListener('click', () => {
     about.hidden = !about.hidden;
@@ -152,6 +171,7 @@ function makeEntry(row: OptionRow, set: Set, tellsSource: boolean): Entry {
     control.show(entryOf(options[row.name]), now);
     element.classList.toggle('given', row.name in options);
     source.hidden = !tellsSource || now.source === '';
+    help.textContent = sentence(descriptionOf(row, process));
     source.textContent = `${now.standard} ${now.unit}: ${now.source}`;
   };
   return { element, show };

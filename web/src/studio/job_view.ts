@@ -1,6 +1,7 @@
 // A job: how far it is, or what came of it.
 import { make } from '../dom';
 import { raised } from '../figures';
+import { advised } from './advice';
 import { button, copyButton, download, trouble } from './pieces';
 import { isEnded, type Session } from './session';
 import type { Slot } from './slot';
@@ -9,7 +10,7 @@ import { bytesIn, secondsIn, sentence, stageIn } from './words';
 
 interface Part {
   readonly element: HTMLElement;
-  readonly show: (job: Job) => void;
+  readonly show: (job: Job, isHeard: boolean) => void;
 }
 
 // While it waits or runs. Stages that were heard of stay in the list.
@@ -21,7 +22,7 @@ function progress(session: Session, id: string): Part {
   const stop = button('Stop', () => session.stop(id));
   const element = make('div', { class: 'progress' }, title, bar, said, stages, stop);
   const seen: string[] = [];
-  const show = (job: Job): void => {
+  const show = (job: Job, isHeard: boolean): void => {
     const before = job.waitingBefore ?? 0;
     const isRunning = job.state === 'running';
     title.textContent = isRunning ? 'Hollowing …' : 'Waiting';
@@ -33,7 +34,11 @@ function progress(session: Session, id: string): Part {
     const share = job.progress ?? null;
     if (share === null) bar.removeAttribute('value');
     else bar.value = share;
-    const told = isRunning ? (stage ? stageIn(stage) : 'Beginning') : before > 0 ? `${before} before this one` : 'It is next';
+    // Nobody knows how far it is while the program is not heard, and nobody can stop it.
+    bar.hidden = !isHeard;
+    stop.hidden = !isHeard;
+    const known = isRunning ? (stage ? stageIn(stage) : 'Beginning') : before > 0 ? `${before} before this one` : 'It is next';
+    const told = isHeard ? known : 'The program does not answer: how far this is is not known';
     if (said.textContent !== told) said.textContent = told;
     stages.hidden = !isRunning;
   };
@@ -74,13 +79,14 @@ function ended(session: Session, job: Job): HTMLElement {
     const head = make('div', { class: 'head' }, make('p', { class: 'done' }, took), downloads(session, job), make('div', { class: 'aside' }, again, remove));
     return make('div', { class: 'ended' }, head, ...notices(job));
   }
-  const words = job.state === 'stopped' ? make('p', {}, 'Stopped. Nothing was written.') : trouble(job.error ?? { what: 'the job failed' });
+  const words = job.state === 'stopped' ? make('p', {}, 'Stopped. Nothing was written.') : trouble(advised(job.error ?? { what: 'the job failed' }));
   return make('div', { class: 'ended nothing' }, make('h2', {}, job.state === 'stopped' ? 'Stopped' : 'Nothing was made'), words, ...notices(job), make('div', { class: 'aside' }, again, remove));
 }
 
 export class JobView {
   readonly element = make('div', { class: 'job' });
   private last: Job | null = null;
+  private wasHeard = true;
   private running: Part | null = null;
 
   constructor(
@@ -88,8 +94,9 @@ export class JobView {
     private readonly slot: Slot,
   ) {}
 
-  show(job: Job): void {
-    if (job === this.last) return;
+  show(job: Job, isHeard: boolean): void {
+    if (job === this.last && isHeard === this.wasHeard) return;
+    this.wasHeard = isHeard;
     const isOther = job.id !== this.last?.id;
     const wasEnded = !isOther && this.last !== null && isEnded(this.last);
     this.last = job;
@@ -108,7 +115,7 @@ export class JobView {
         this.running = progress(this.session, job.id);
         this.element.replaceChildren(this.running.element);
       }
-      this.running.show(job);
+      this.running.show(job, isHeard);
     }
   }
 

@@ -1,7 +1,8 @@
 // Where models come in, and the list of those that are there.
 import { format } from '../colours';
 import { make } from '../dom';
-import { button, trouble } from './pieces';
+import { whyUnusable } from './advice';
+import { button, isWanted, trouble } from './pieces';
 import type { Session } from './session';
 import { onChange, type Page, type Upload } from './store';
 import type { Model } from './told';
@@ -11,9 +12,6 @@ export function sizeOf({ report: { input } }: Model): string {
   const { lower_mm: lower, upper_mm: upper } = input.box;
   return `${upper.map((high, k) => format(high - lower[k], 1)).join(' × ')} mm`;
 }
-
-// What the command line says, after the word for what can be done with it: "none: ...".
-export const whyUnusable = ({ use }: Model): string => use.replace(/^none: /, '');
 
 export function showModels(into: HTMLElement, session: Session): void {
   const { store } = session;
@@ -60,7 +58,7 @@ function entry(model: Model, { chosen }: Page, session: Session): HTMLElement {
     make('span', { class: 'note' }, `${sizeOf(model)}, ${format(input.triangles)} triangles`),
   );
   choose.addEventListener('click', () => session.choose(model.id));
-  const remove = button('×', () => session.removeModel(model.id), `Remove ${model.name}`);
+  const remove = button('×', () => removeIfWanted(model, session), `Remove ${model.name}`);
   remove.classList.add('small');
   const item = make('li', { class: isChosen ? 'chosen-model' : '' }, choose, remove);
   if (isChosen || !model.usable) {
@@ -68,6 +66,13 @@ function entry(model: Model, { chosen }: Page, session: Session): HTMLElement {
     item.append(make('p', { class: `note use ${model.usable ? '' : 'bad'}` }, sentence(use)));
   }
   return item;
+}
+
+// Results that nobody has saved go with their model.
+async function removeIfWanted({ id, name }: Model, session: Session): Promise<void> {
+  const results = session.store.now.jobs.filter(({ model, state }) => model === id && state === 'done').length;
+  const what = results === 1 ? 'the result' : `the ${results} results`;
+  if (results === 0 || (await isWanted(`Remove ${name} and ${what} made of it?`, 'Remove'))) await session.removeModel(id);
 }
 
 // Bars are moved, not made anew: screen readers would begin again with each.

@@ -30,6 +30,21 @@ export function trouble({ what, hint }: Trouble): HTMLElement {
   return box;
 }
 
+// Asks before what cannot be taken back is done.
+export function isWanted(question: string, act: string): Promise<boolean> {
+  const no = make('button', { value: '', autofocus: '' }, 'Keep');
+  const yes = make('button', { value: 'yes', class: 'danger' }, act);
+  const dialog = make('dialog', { 'aria-labelledby': 'question' }, make('form', { method: 'dialog' }, make('p', { id: 'question' }, question), make('div', { class: 'answers' }, no, yes)));
+  document.body.append(dialog);
+  dialog.showModal();
+  return new Promise((done) =>
+    dialog.addEventListener('close', () => {
+      dialog.remove();
+      done(dialog.returnValue === 'yes');
+    }),
+  );
+}
+
 export function copyButton(what: string, text: () => string): HTMLButtonElement {
   const element = make('button', { type: 'button' }, what);
   element.addEventListener('click', () => {

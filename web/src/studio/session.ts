@@ -1,7 +1,7 @@
 // What the page does with the program: asks for all there is, hears what changes, sends models, starts and stops jobs.
 import { Refusal, troubleOf, type Api } from './api';
 import type { ServerEvent } from './event_stream';
-import { modelChosen, type Store, type Upload } from './store';
+import { modelChosen, shownIn, type Page, type Store, type Upload } from './store';
 import type { Job, Model, Told, Trouble } from './told';
 import { bytesIn } from './words';
 
@@ -30,6 +30,7 @@ export class Session {
           () => {
             wait = 500;
             this.store.set({ connection: 'open' });
+            void this.forgetLost();
           },
         );
       } catch (error) {
@@ -49,9 +50,25 @@ export class Session {
     const { chosen } = this.store.now;
     const { models, jobs } = told;
     const isThere = models.some(({ id }) => id === chosen);
-    this.store.set({ told, models, jobs, ...(isThere ? {} : { chosen: models.at(-1)?.id ?? null }) });
+    this.settle({ told, models, jobs, ...(isThere ? {} : { chosen: models.at(-1)?.id ?? null, shown: { kind: 'model' } }) });
     if (isFirst) this.goOn(jobs);
-    else if (!isThere) this.store.set({ shown: { kind: 'model' } });
+  }
+
+  // What is looked at may be gone.
+  private settle(change: Partial<Page>): void {
+    this.store.set({ ...change, shown: shownIn({ ...this.store.now, ...change }) });
+  }
+
+  // What was removed between the answer of what is there and the beginning of the events is told by neither.
+  private async forgetLost(): Promise<void> {
+    const { models, jobs } = this.store.now;
+    try {
+      const told = await this.api.state();
+      const there = new Set([...told.models, ...told.jobs].map(({ id }) => id));
+      for (const { id } of [...models, ...jobs]) if (!there.has(id)) this.forget(id);
+    } catch {
+      // The stream of events ends, too, and all is asked for again.
+    }
   }
 
   // A page that is loaded again shows what was done last.
@@ -82,16 +99,14 @@ export class Session {
     this.store.set({ models: [...models, model], ...(chosen === null ? { chosen: model.id } : {}) });
   }
 
-  // A model or a job; those of a model are told one by one.
+  // A model with all that was made of it, or a job.
   private forget(gone: string): void {
-    const { models, jobs, shown, chosen } = this.store.now;
+    const { models, jobs, chosen } = this.store.now;
     const left = models.filter(({ id }) => id !== gone);
-    const isShown = gone === chosen || (shown.kind === 'job' && shown.id === gone);
-    this.store.set({
+    this.settle({
       models: left,
-      jobs: jobs.filter(({ id }) => id !== gone),
-      ...(gone === chosen ? { chosen: left.at(-1)?.id ?? null } : {}),
-      ...(isShown ? { shown: { kind: 'model' } } : {}),
+      jobs: jobs.filter(({ id, model }) => id !== gone && model !== gone),
+      ...(gone === chosen ? { chosen: left.at(-1)?.id ?? null, shown: { kind: 'model' } } : {}),
     });
   }
 
@@ -180,11 +195,9 @@ export class Session {
     this.forget(id);
   }
 
+  // The program removes what was made of it, too.
   async removeModel(id: string): Promise<void> {
     await this.api.remove('models', id); // refused while a job needs it
     this.forget(id);
-    // The program would keep what was made of it.
-    for (const job of this.store.now.jobs.filter(({ model }) => model === id)) await this.removeJob(job.id);
   }
 }
-

@@ -5,7 +5,7 @@ import { ComparisonView } from './comparison_view';
 import { JobView } from './job_view';
 import { isEnded, type Session } from './session';
 import { Scenes, Slot } from './slot';
-import { jobShown, jobsOf, modelChosen, type Page, type Shown } from './store';
+import { jobShown, jobsOf, modelChosen, shownIn, type Page, type Shown } from './store';
 import type { Job } from './told';
 
 interface Tab {
@@ -54,7 +54,7 @@ export function showTabs(bar: HTMLElement, view: HTMLElement, session: Session):
   };
   store.listen((page) => {
     const tabs = tabsOf(page);
-    const chosen = keyOf(page.shown);
+    const chosen = keyOf(shownIn(page));
     const now = JSON.stringify([tabs, chosen]);
     if (now === last) return;
     last = now;
@@ -90,7 +90,7 @@ export function showView(view: HTMLElement, session: Session): void {
   session.store.listen((page) => {
     const model = modelChosen(page);
     const job = jobShown(page);
-    const isCompared = page.shown.kind === 'comparison' && model !== null;
+    const isCompared = shownIn(page).kind === 'comparison' && model !== null;
     if (!isCompared) comparison.hide();
     if (!job) jobView.hide();
     if (isCompared) {
@@ -99,7 +99,7 @@ export function showView(view: HTMLElement, session: Session): void {
       comparison.show(page);
     } else if (job) {
       put(jobView.element);
-      jobView.show(job);
+      jobView.show(job, page.connection !== 'lost');
     } else if (model) {
       put(slot.element);
       slot.show(`models/${model.id}/scene`);

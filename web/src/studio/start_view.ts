@@ -1,11 +1,14 @@
 // The estimate, the command line that does the same, and the button.
 import { make } from '../dom';
 import { raised } from '../figures';
+import { advised, optionOf, titled } from './advice';
 import { troubleOf, type Api } from './api';
+import { titleOf } from './fields';
 import { attempt, copyButton, trouble } from './pieces';
+import { kRefused } from './form_view';
 import type { Session } from './session';
 import { modelChosen, type Page } from './store';
-import type { Estimate, Model, Trouble } from './told';
+import type { Estimate, Trouble } from './told';
 
 // Those that were asked for while others were waited for do not matter any more.
 class Estimates {
@@ -37,24 +40,43 @@ class Estimates {
   }
 }
 
-// What stands in the list of models already, word for word.
-const isKnown = ({ what }: Trouble, model: Model | null): boolean => model !== null && !model.usable && what === model.use;
-
-const kUnusable: Trouble = {
-  what: 'this model cannot be hollowed as it is',
-  hint: 'what is wrong is marked in it and said above; where meshing it anew can help, "Surface: remesh" is under "The model"',
-};
+// How much of the window the bar hides, so that what has the focus is scrolled clear of it. One that would hide half of the
+// window does not stay.
+function keepClearOf(bar: HTMLElement, form: HTMLElement): void {
+  const clear = (): void => {
+    const focused = document.activeElement;
+    if (!focused || bar.contains(focused) || !form.contains(focused)) return;
+    // What a pointer has pressed must not move away from it.
+    if (focused.matches(':focus-visible')) focused.scrollIntoView({ block: 'nearest' });
+  };
+  const tell = (): void => {
+    const height = Math.ceil(bar.getBoundingClientRect().height);
+    const stays = height <= window.innerHeight / 2;
+    bar.classList.toggle('stays', stays);
+    document.documentElement.style.setProperty('--hidden-below', `${stays ? height : 0}px`);
+    clear(); // what it says may grow over the field that it is about
+  };
+  new ResizeObserver(tell).observe(bar);
+  window.addEventListener('resize', tell);
+  form.addEventListener('focusin', clear); // browsers scroll to the first line of a field of several
+}
 
 export function showStart(into: HTMLElement, form: HTMLFormElement, session: Session): void {
   const { store, api } = session;
   const rows = make('dl', { id: 'estimate', 'aria-live': 'polite' });
   const command = make('code', { id: 'command', tabindex: '0', 'aria-label': 'Command line' });
   const line = make('details', { class: 'command' }, make('summary', {}, 'The same on the command line'), command, copyButton('Copy', () => command.textContent ?? ''));
-  const words = make('div', { id: 'refused' });
+  const words = make('div', { id: kRefused });
   const go = make('button', { type: 'submit', id: 'go', class: 'go' }, 'Hollow it');
   const press = make('div', { class: 'press' }, go);
   into.append(rows, words, line, press);
+  keepClearOf(into, form);
 
+  const inFields = (refused: Trouble): Trouble => {
+    const option = optionOf(refused);
+    const isField = store.now.told?.options.some(({ name }) => name === option) ?? false;
+    return option && isField ? titled(refused, titleOf(option)) : advised(refused, modelChosen(store.now));
+  };
   const estimates = new Estimates(api, (estimate, refused) => {
     into.removeAttribute('aria-busy');
     rows.replaceChildren(
@@ -63,7 +85,8 @@ export function showStart(into: HTMLElement, form: HTMLFormElement, session: Ses
     command.textContent = estimate?.command ?? '';
     line.hidden = !estimate;
     const model = modelChosen(store.now);
-    words.replaceChildren(...(refused ? [trouble(isKnown(refused, model) ? kUnusable : refused)] : []));
+    words.replaceChildren(...(refused ? [trouble(inFields(refused))] : []));
+    store.set({ refused: refused && optionOf(refused) });
     if (!model) words.replaceChildren(make('p', { class: 'note' }, 'Add a model, and what can be saved is estimated here.'));
     // Other refusals are not the job's own.
     go.disabled = !model || store.now.connection !== 'open' || refused?.exit !== undefined;

@@ -23,6 +23,7 @@ export interface Page {
   readonly chosen: string | null; // model
   readonly shown: Shown;
   readonly options: Options;
+  readonly refused: string | null; // option whose value the program refuses
 }
 
 export const kFirst: Page = {
@@ -34,6 +35,7 @@ export const kFirst: Page = {
   chosen: null,
   shown: { kind: 'model' },
   options: {},
+  refused: null,
 };
 
 export class Store {
@@ -63,6 +65,14 @@ export class Store {
 export const modelChosen = ({ models, chosen }: Page): Model | null => models.find(({ id }) => id === chosen) ?? null;
 
 export const jobsOf = ({ jobs, chosen }: Page): readonly Job[] => jobs.filter(({ model }) => model === chosen);
+
+// What is looked at, or the model where that is there no more.
+export function shownIn(page: Page): Shown {
+  const { shown } = page;
+  const jobs = jobsOf(page);
+  const isThere = shown.kind === 'job' ? jobs.some(({ id }) => id === shown.id) : shown.kind === 'model' || jobs.some(({ state }) => state === 'done');
+  return isThere ? shown : { kind: 'model' };
+}
 
 export const jobShown = (page: Page): Job | null => {
   const { shown } = page;

@@ -1,4 +1,4 @@
-import { expect, it } from 'vitest';
+import { describe, expect, it } from 'vitest';
 import { compare, nameOfJob, type Done } from '../../src/studio/comparison';
 import type { Job, Model, Report } from '../../src/studio/told';
 
@@ -77,4 +77,42 @@ it('leaves out what nobody knows', () => {
   const { rows } = compare(kModel, [done('j1', { ...kReport, strength_and_balance: null, print: null, material: null })]);
   expect(rows.map(({ name }) => name)).not.toContain('Of other infill');
   expect(rows.some(({ name }) => name.startsWith('Filament') || name.startsWith('Mass'))).toBe(false);
+});
+
+describe('jobs of other sizes', () => {
+  // Twice as large, so that all is eight times as much.
+  const large = (report: Report): Report => ({
+    ...report,
+    input: { ...kInput, filled_volume_mm3: 160000, box: { lower_mm: [0, 0, 0], upper_mm: [40, 40, 100] } },
+    volume: { before_mm3: 160000, after_mm3: 40000 },
+    print: { infill_percent: 15, filament_before_mm3: 48000, filament_after_mm3: 24000, verdict: null },
+    material: { ...report.material!, mass_before_g: 198.4, mass_after_g: 49.6, cost_before: 4.96, cost_after: 1.24 },
+  });
+  const cellsIn = ({ rows }: ReturnType<typeof compare>, name: string) => rows.find((one) => one.name === name);
+
+  it('are compared with the model of their size, not as it was read', () => {
+    const scaled = compare(kModel, [done('j1', large(kReport), { scale: '2' })]);
+    expect(scaled.columns.map(({ title }) => title)).toEqual(['Solid, 40 × 40 × 100 mm', 'Voids 1']);
+    expect(cellsIn(scaled, 'Solid material')).toMatchObject({ cells: ['160 cm³', '40 cm³ (−75 %)'], best: [1] });
+    expect(scaled.sides.map(({ title }) => title)).toEqual(['Solid as it was read, 20 × 20 × 50 mm', 'Voids 1']);
+  });
+
+  it('have a solid of their own, and are not the least because another is larger', () => {
+    const mixed = compare(kModel, [done('j1', large(kReport), { scale: '2' }), done('j2', kReport), done('j3', large(kReport))]);
+    expect(mixed.columns.map(({ title }) => title)).toEqual(['Solid, 40 × 40 × 100 mm', 'Voids 1', 'Voids 3', 'Solid, 20 × 20 × 50 mm', 'Voids 2']);
+    expect(cellsIn(mixed, 'Solid material')).toEqual({
+      name: 'Solid material',
+      cells: ['160 cm³', '40 cm³ (−75 %)', '40 cm³ (−75 %)', '20 cm³', '9 cm³ (−55 %)'],
+      best: [1, 2, 4],
+    });
+    expect(cellsIn(mixed, 'Mass, PLA, printed solid')?.cells).toEqual(['198.4 g', '49.6 g (−75 %)', '49.6 g (−75 %)', '24.8 g', '11.2 g (−55 %)']);
+    expect(cellsIn(mixed, 'Cost, printed solid')?.cells).toEqual(['4.96', '1.24 (−75 %)', '1.24 (−75 %)', '0.62', '0.28 (−55 %)']);
+    expect(cellsIn(mixed, 'Filament at 15 % infill')?.cells).toEqual(['48 cm³', '24 cm³ (−50 %)', '24 cm³ (−50 %)', '6 cm³', '9 cm³ (+50 %)']);
+    expect(mixed.sides.map(({ id }) => id)).toEqual(['solid', 'j1', 'j3', 'j2']);
+  });
+
+  it('are set beside what they began with themselves, where that differs in one size', () => {
+    const dense = { ...kReport, material: { ...kReport.material!, mass_before_g: 40, mass_after_g: 10 } };
+    expect(cellsIn(compare(kModel, [done('j1', kReport), done('j2', dense)]), 'Mass, PLA, printed solid')?.cells[2]).toBe('10 g (−75 %)');
+  });
 });

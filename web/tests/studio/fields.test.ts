@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { entryOf, fieldOf, groupsOf, isAsked, kMain, valueOf, withValue } from '../../src/studio/fields';
+import { descriptionOf, entryOf, fieldOf, groupsOf, isAsked, kMain, valueOf, withValue } from '../../src/studio/fields';
 import type { OptionRow, Process } from '../../src/studio/told';
 
 const row = (name: string, kind: OptionRow['kind'], more: Partial<OptionRow> = {}): OptionRow => ({
@@ -20,6 +20,7 @@ const kProcess: Process = {
   rows: [
     { option: 'wall', name: 'wall', value: 2, unit: 'mm', source: 'a guide' },
     { option: 'bridge', name: 'bridge', value: null, unit: 'mm', source: null },
+    { option: 'cell-size', name: 'cell-size', value: 33, unit: 'mm', source: null },
     { option: null, name: 'least-wall', value: 0.5, unit: 'mm', source: 'another guide' },
   ],
 };
@@ -30,6 +31,8 @@ it('takes what holds by default from the process, with its source, before what t
   expect(fieldOf(wall, undefined)).toMatchObject({ standard: '1.2', source: '' });
   expect(fieldOf(row('bridge', 'number'), kProcess).standard).toBe('none');
   expect(fieldOf(row('drain', 'flag', { off: true }), kProcess).standard).toBe('yes');
+  for (const name of ['target-saving', 'target-mass', 'target-density', 'max-voids', 'max-triangles']) expect(fieldOf(row(name, 'number'), kProcess).standard).toBe('none');
+  expect(fieldOf(row('material', 'text'), kProcess).standard).toBe('resin');
   expect(fieldOf(row('some-new-thing', 'text'), kProcess)).toMatchObject({ title: 'Some new thing', standard: '' });
 });
 
@@ -70,4 +73,19 @@ it('shows again what was given', () => {
   expect(entryOf(['bottom', 'left'])).toBe('bottom\nleft');
   expect(withValue({ wall: '2' }, 'gap', '1')).toEqual({ wall: '2', gap: '1' });
   expect(withValue({ wall: '2', gap: '1' }, 'gap', null)).toEqual({ wall: '2' });
+});
+
+it('tells what an option does for the process that is chosen', () => {
+  const tell = (name: string, description: string, unit = 'mm') => descriptionOf(row(name, 'number', { unit, description }), kProcess);
+  expect(tell('wall', 'Least thickness (default of the process, here of fdm)')).toBe('Least thickness (default 2 mm, of sla)');
+  expect(tell('bridge', 'Ceiling (default of the process; none for sla and sls; there are both)')).toBe('Ceiling (no default of sla; there are both)');
+  expect(tell('drain', 'Join voids (default of the process: sla, sls and metal drain, fdm does not)', '')).toBe('Join voids (default yes, of sla)');
+  expect(tell('material', 'For mass (default of the process; fdm: PLA)', '')).toBe('For mass (default resin, of sla)');
+  expect(tell('keep-solid', 'Stays: a mesh file, a modifier\'s name in a 3MF project, box:X; may be repeated')).toBe('Stays: box:X; one on a line');
+  const cells = 'Apart (default of the process, 21 where it has none, or what --max-radius gives; 33 for sla and sls); half';
+  expect(tell('cell-size', cells)).toBe('Apart (default 33 mm, of sla, or what --max-radius gives); half');
+  const none = { ...kProcess, name: 'fdm', rows: [{ option: 'cell-size', name: 'cell-size', value: null, unit: 'mm', source: null }] };
+  expect(descriptionOf(row('cell-size', 'number', { description: cells }), none)).toBe('Apart (default 21, or what --max-radius gives); half');
+  expect(fieldOf(row('cell-size', 'number'), none).standard).toBe('');
+  expect(tell('gap', 'Between two voids')).toBe('Between two voids');
 });
