@@ -11,8 +11,8 @@ std::optional<std::string_view> built_file(std::string_view name) {
 }
 
 std::string why_no_built_file(std::string_view name) {
-  constexpr std::string_view kWhy = AERATE_WHY_NO_PAGE;
-  return kWhy.empty() ? "what it was built with has no " + std::string(name) : std::string(kWhy);
+  constexpr char kWhy[] = AERATE_WHY_NO_PAGE;
+  return sizeof kWhy == 1 ? "what it was built with has no " + std::string(name) : kWhy;
 }
 
 }  // namespace aerate
