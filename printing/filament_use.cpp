@@ -106,7 +106,7 @@ DepthSlope slope_at(const Pixels& depths, std::size_t i, const LayerRaster& rast
     const int rise = lower > 0 ? here - lower : std::max(before, after) - here;
     return rises ? rise : -rise;
   };
-  const double x = along(1), y = along(raster.count_x), length = std::hypot(x, y);
+  const double x = along(1), y = along(raster.count_x), length = std::sqrt(x * x + y * y);
   return length > 0 ? DepthSlope{x / length, y / length} : DepthSlope{};
 }
 

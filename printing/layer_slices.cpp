@@ -95,7 +95,10 @@ LayerSlice LayerSlicer::slice(std::size_t layer, double reach) const {
       contour(raster_.first_z + static_cast<double>(layer) * raster_.layer_height, layer);
   fill(segments, slice);
   measure_depth(segments, reach, slice);
-  for (const Segment& s : segments) slice.contour_length += std::hypot(s.bx - s.ax, s.by - s.ay);
+  for (const Segment& s : segments) {
+    const double x = s.bx - s.ax, y = s.by - s.ay;
+    slice.contour_length += std::sqrt(x * x + y * y);
+  }
   return slice;
 }
 
