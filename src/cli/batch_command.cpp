@@ -24,6 +24,7 @@
 #include "cli/hollow_forms.h"
 #include "cli/interrupt.h"
 #include "cli/numbers.h"
+#include "cli/option_form.h"
 #include "cli/process_options.h"
 #include "cli/terminal.h"
 #include "core/error.h"
@@ -59,13 +60,13 @@ bool is_taken_over(const CLI::Option& option) {
 
 OptionRule rule_of(const CLI::Option& option) {
   OptionRule rule{.name = option.get_lnames().front()};
-  const std::string type = option.get_type_name();
-  rule.may_be_off = !option.get_fnames().empty() && !type.starts_with("[=");
-  rule.may_be_bare = type.starts_with("[=");
-  rule.names_file = type == "FILE";
-  if (option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll)
+  const OptionForm form = form_of(option);
+  rule.may_be_off = form.may_be_off;
+  rule.may_be_bare = form.may_be_bare;
+  rule.names_file = option.get_type_name() == "FILE";
+  if (form.is_list)
     rule.kind = OptionRule::Kind::list;
-  else if (option.get_items_expected_max() == 0)
+  else if (form.is_flag)
     rule.kind = OptionRule::Kind::flag;
   return rule;
 }
@@ -101,7 +102,7 @@ class TakenOptions {
     const OptionRule& rule = rules_.emplace_back(rule_of(option));
     std::vector<std::string>& values = values_.emplace_back();
     const std::string names = option.get_name(false, true);
-    const bool is_flag = option.get_items_expected_max() == 0 || rule.may_be_bare;
+    const bool is_flag = form_of(option).is_flag || rule.may_be_bare;
     CLI::Option* const added = is_flag ? command.add_flag(names, values, option.get_description())
                                        : command.add_option(names, values, option.get_description());
     if (!is_flag) added->expected(1)->allow_extra_args(false);

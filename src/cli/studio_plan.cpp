@@ -14,6 +14,7 @@
 
 #include "cli/hollow_forms.h"
 #include "cli/keep_solid_options.h"
+#include "cli/option_form.h"
 #include "cli/reports.h"
 #include "core/error.h"
 #include "pipeline/process_choice.h"
@@ -109,15 +110,15 @@ std::optional<OptionRow> row_of_option(const CLI::Option& option) {
                 .description = option.get_description(),
                 .group = group_of(name, option)};
   if (!option.get_default_str().empty()) row.default_value = option.get_default_str();
-  row.may_be_off = std::ranges::any_of(option.get_fnames(),
-                                       [](const std::string& each) { return each.starts_with("no-"); });
-  row.may_be_bare = type.name.starts_with("[=");
+  const OptionForm form = form_of(option);
+  row.may_be_off = form.may_be_off;
+  row.may_be_bare = form.may_be_bare;
   if (name == "process")
     for (const Process& process : processes()) row.choices.push_back(process.name);
   const auto unit = unit_of(type.name);
-  if (option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll)
+  if (form.is_list)
     row.kind = OptionKind::list;
-  else if (option.get_items_expected_max() == 0 && !row.may_be_bare)
+  else if (form.is_flag && !form.may_be_bare)
     row.kind = OptionKind::flag;
   else if (!row.choices.empty())
     row.kind = OptionKind::choice;

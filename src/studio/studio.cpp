@@ -167,8 +167,6 @@ Upload::Upload(std::string id, std::string name, const fs::path& parent, std::ui
       ticket_(std::move(ticket)) {}
 
 void Upload::write(std::string_view bytes) {
-  ShownPaths shown;
-  shown.add(path_, name_);
   if (bytes.size() > most_bytes_ - bytes_)
     throw Refused({413, fmt::format("{}: the file is larger than {}", name_, in_megabytes(most_bytes_)),
                    "start 'aerate studio' with a larger --max-upload"});
@@ -176,6 +174,8 @@ void Upload::write(std::string_view bytes) {
   try {
     file_->write(bytes);
   } catch (const FailureError&) {
+    ShownPaths shown;
+    shown.add(path_, name_);
     Refusal refusal = refusal_of(std::current_exception());
     refusal.what = shown.in(std::move(refusal.what));
     if (refusal.hint.empty())
@@ -251,9 +251,12 @@ ModelRecord Studio::take(std::unique_ptr<Upload> upload) {
       write_bytes(page_bytes(scene_of(inspected.mesh, report), "aerate " AERATE_VERSION),
                   fs::path(upload->folder_.path() / kSceneFile));
       made->record.inspection = lent_.inspection_json(report);
-      if (const auto& refusal = inspected.refusal)
-        made->record.refusal = Refusal{422, shown.in(refusal->what()), shown.in(refusal->hint()),
-                                       static_cast<int>(refusal->code())};
+      if (inspected.refusal) {
+        Refusal refusal = refusal_of(std::make_exception_ptr(*inspected.refusal));
+        refusal.what = shown.in(std::move(refusal.what));
+        refusal.hint = shown.in(std::move(refusal.hint));
+        made->record.refusal = std::move(refusal);
+      }
       made->record.use = report.use;
       const Inspection& inspection = report.input.inspection;
       if (!inspected.refusal && inspection.closed())
