@@ -124,8 +124,9 @@ std::string submit_array(const Submission& submission, std::size_t array, const 
 }
 
 TasksUnderWay tasks_under_way(const Submission& submission, Monitor& monitor) {
-  const std::string printed =
-      said_by({"squeue", "--noheader", "--array", "--name=" + submission.name, "--format=%T %r"}, monitor);
+  if (submission.is_over) return {};
+  const std::string printed = said_by(
+      {"squeue", "--all", "--noheader", "--array", "--name=" + submission.name, "--format=%T %r"}, monitor);
   TasksUnderWay under_way;
   for_each_line(printed, [&](std::string_view line) {
     line = without_blanks(line);

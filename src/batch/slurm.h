@@ -38,6 +38,7 @@ std::string submit_array(const Submission& submission, std::size_t array,
                          const std::filesystem::path& results, const std::filesystem::path& program,
                          const SlurmRequest& request, Monitor& monitor);
 
+// Does not ask where it is known that all have ended.
 TasksUnderWay tasks_under_way(const Submission& submission, Monitor& monitor);
 
 void cancel_tasks(const Submission& submission, Monitor& monitor);

@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kSchema = "aerate.batch.submission";
 constexpr int kVersion = 1;
-constexpr const char* kLast = "last";
+constexpr const char *kLast = "last", *kOver = "over";
 constexpr const char* kEnding = ".cbor";  // names of files are bytes, which JSON's text has no place for
 
 // Below the folder of results, which others may know by another name.
@@ -144,12 +144,18 @@ std::optional<Submission> last_submission(const fs::path& results) {
   const fs::path last = submissions_folder(results) / kLast;
   std::error_code ignored;
   if (!fs::exists(last, ignored)) return std::nullopt;
-  return read_submission(submission_path(results, std::string(without_blanks(read_text(last)))));
+  Submission submission =
+      read_submission(submission_path(results, std::string(without_blanks(read_text(last)))));
+  submission.is_over = fs::exists(submissions_folder(results) / kOver, ignored);
+  return submission;
 }
 
-void forget_submission(const fs::path& results) {
-  std::error_code ignored;
-  fs::remove(submissions_folder(results) / kLast, ignored);
+void mark_submission_over(const fs::path& results) {
+  try {
+    write(submissions_folder(results) / kOver, "");
+  } catch (const FailureError&) {
+    // A full disk: the cluster is asked again then.
+  }
 }
 
 void clear_submissions(const fs::path& results) {

@@ -18,6 +18,7 @@ struct Submission {
   int threads = 1;                            // of each model
   std::vector<PlannedJob> plan = {};          // all of the batch, done or not
   std::vector<TaskArray> arrays = {};
+  bool is_over = false;  // it has been seen that none of its tasks is under way
 };
 
 // The folder in which submissions are kept, and in which tasks write what they say.
@@ -37,13 +38,13 @@ void keep_submission(const std::filesystem::path& results, const Submission& sub
 // Paths of results are as the file's own is. Throws InputError for a file that is none, or of another form.
 Submission read_submission(const std::filesystem::path& file);
 
-// Nothing if there is none, or it has been forgotten. Throws as read_submission does.
+// Nothing if there is none. Throws as read_submission does.
 std::optional<Submission> last_submission(const std::filesystem::path& results);
 
-// It has ended, or was never handed over. Its file and what its tasks said stay.
-void forget_submission(const std::filesystem::path& results);
+// None of the last one's tasks is under way any more. Where that cannot be written, nothing is lost but the knowledge.
+void mark_submission_over(const std::filesystem::path& results);
 
-// Removes all that is known of submissions that have ended.
+// Removes all that is known of submissions, of which none is under way.
 void clear_submissions(const std::filesystem::path& results);
 
 }  // namespace aerate::batch

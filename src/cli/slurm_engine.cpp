@@ -119,7 +119,6 @@ bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_
   const std::vector<BatchRow*> to_do = batch::rows_to_do(rows);
   if (!options_.is_quiet) tell_known_failures(rows);
   if (to_do.empty()) {
-    batch::forget_submission(results_);
     finish_batch(rows, results_, 0, options_.is_quiet);
     return false;
   }
@@ -146,7 +145,7 @@ bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_
           batch::submit_array(submission, i, results_, program, options_.request, monitor_);
     } catch (const FailureError&) {
       if (i > 0) batch::cancel_tasks(submission, monitor_);
-      batch::forget_submission(results_);
+      batch::clear_submissions(results_);
       throw;
     }
     tasks += submission.arrays[i].tasks.size();
@@ -233,6 +232,7 @@ void SlurmEngine::cancel() {
     sleep(kPause, monitor_);
   }
   const batch::ResultsFolder folder(results_, cancelled.plan, monitor_);
+  batch::mark_submission_over(results_);
   const std::vector<BatchRow> rows = rows_of(cancelled, true);
   try_to_summarise(rows, results_, options_.is_quiet);
   const batch::Counts counts = batch::counts_of(rows);
@@ -246,7 +246,10 @@ void SlurmEngine::collect() {
   const Submission collected = submission();
   const TasksUnderWay tasks = batch::tasks_under_way(collected, monitor_);
   std::optional<batch::ResultsFolder> folder;  // alone in it when all have ended
-  if (tasks.none()) folder.emplace(results_, collected.plan, monitor_);
+  if (tasks.none()) {
+    folder.emplace(results_, collected.plan, monitor_);
+    batch::mark_submission_over(results_);
+  }
   const std::vector<BatchRow> rows = rows_of(collected, tasks.none());
   const auto is_new =
       static_cast<std::size_t>(std::ranges::count_if(rows, [](const BatchRow& row) { return row.is_new; }));
