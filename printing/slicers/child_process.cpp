@@ -4,15 +4,20 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <iostream>
 #include <mutex>
+#include <optional>
 #include <poll.h>
 #include <string_view>
 #include <sys/file.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/uio.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
@@ -81,8 +86,21 @@ struct KeeperReport {
 struct Start {
   std::vector<std::string> arguments, variables;
   std::string answers, printed;
+  CommandMain own = nullptr;  // what is run instead of a program's file
   std::vector<char*> argv = pointers_to(arguments), envp = pointers_to(variables);
 };
+
+// Without loading this program anew. Of a process that had one thread, so that this may do anything.
+[[noreturn]] void run_own(const Start& start, int report_to) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGCHLD}) ::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_NAME, "aerate-job");  // for who looks for what keeps the machine busy
+  ::close(report_to);                  // open in the keeper alone, whose end is seen by it
+  const int status = start.own(static_cast<int>(start.arguments.size()), start.argv.data());
+  std::cout.flush();
+  std::cerr.flush();
+  // Without what is done at an exit: libraries wait there for threads that they started when they were loaded, which a copy has not.
+  ::_exit(status);
+}
 
 [[noreturn]] void become_program(const Start& start, pid_t keeper, int report_to) {
   KeeperReport failure;
@@ -93,8 +111,10 @@ struct Start {
   const int out =
       ::open(start.printed.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kOwnerOnly);
   if (in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
-      ::dup2(out, STDERR_FILENO) >= 0)
+      ::dup2(out, STDERR_FILENO) >= 0) {
+    if (start.own != nullptr) run_own(start, report_to);
     ::execvpe(start.argv[0], start.argv.data(), start.envp.data());
+  }
   failure.error = errno;
   [[maybe_unused]] const ssize_t written = ::write(report_to, &failure, sizeof(failure));
   ::_exit(1);
@@ -129,19 +149,33 @@ int opened_process(pid_t process) {
 
 // The forked process that has the program as its child. Only calls that are safe after the fork of a process
 // with threads.
-[[noreturn]] void become_keeper(const Start& start, Pipe& life, Pipe& reports) {
+[[noreturn]] void become_keeper(const Start& start, int life, int report_to) {
   ::setpgid(0, 0);  // out of reach of the terminal's signals
-  ::close(life.writes);
-  ::close(reports.reads);
   const pid_t keeper = ::getpid();
   const pid_t program = ::fork();
-  if (program == 0) become_program(start, keeper, reports.writes);
+  if (program == 0) become_program(start, keeper, report_to);
   if (program < 0) {
     const KeeperReport failure{.error = errno, .status = 0};
-    [[maybe_unused]] const ssize_t written = ::write(reports.writes, &failure, sizeof(failure));
+    [[maybe_unused]] const ssize_t written = ::write(report_to, &failure, sizeof(failure));
     ::_exit(1);
   }
-  keep(program, life.reads, reports.writes);
+  keep(program, life, report_to);
+}
+
+FailureError cannot_be_run(const std::string& name, int error) {
+  return FailureError(name + ": cannot be run: " + std::generic_category().message(error));
+}
+
+// Until the program has ended; its exit status, or 128 + the signal that ended it.
+int awaited(int reports, const std::string& name, Monitor& monitor) {
+  constexpr int kPollMilliseconds = 10;
+  pollfd watched{reports, POLLIN, 0};
+  while (::poll(&watched, 1, kPollMilliseconds) <= 0) monitor.check_interrupted();
+  KeeperReport report;
+  if (::read(reports, &report, sizeof(report)) != sizeof(report))
+    throw FailureError("a started program cannot be waited for");
+  if (report.error != 0) throw cannot_be_run(name, report.error);
+  return WIFEXITED(report.status) ? WEXITSTATUS(report.status) : 128 + WTERMSIG(report.status);
 }
 
 // A program that leads a process group, with its standard streams from and to files, and a keeper beside it. It
@@ -152,8 +186,12 @@ class RunningChild {
                const std::unique_lock<std::mutex>& /*one_at_a_time*/ = starting())
       : name_(start.arguments.front()), monitor_(monitor) {
     keeper_ = ::fork();
-    if (keeper_ == 0) become_keeper(start, life_, reports_);
-    if (keeper_ < 0) throw cannot_be_run(errno);
+    if (keeper_ == 0) {
+      ::close(life_.writes);
+      ::close(reports_.reads);
+      become_keeper(start, life_.reads, reports_.writes);
+    }
+    if (keeper_ < 0) throw cannot_be_run(name_, errno);
     close_if_open(life_.reads);
     close_if_open(reports_.writes);
   }
@@ -165,16 +203,7 @@ class RunningChild {
   RunningChild(const RunningChild&) = delete;
   RunningChild& operator=(const RunningChild&) = delete;
 
-  int wait() {
-    constexpr int kPollMilliseconds = 10;
-    pollfd watched{reports_.reads, POLLIN, 0};
-    while (::poll(&watched, 1, kPollMilliseconds) <= 0) monitor_.check_interrupted();
-    KeeperReport report;
-    if (::read(reports_.reads, &report, sizeof(report)) != sizeof(report))
-      throw FailureError("a started program cannot be waited for");
-    if (report.error != 0) throw cannot_be_run(report.error);
-    return WIFEXITED(report.status) ? WEXITSTATUS(report.status) : 128 + WTERMSIG(report.status);
-  }
+  int wait() { return awaited(reports_.reads, name_, monitor_); }
 
  private:
   // Pipes are made and ends closed while no other thread forks: keepers have the ends of those only that were started before them, so that
@@ -182,10 +211,6 @@ class RunningChild {
   static std::unique_lock<std::mutex> starting() {
     static std::mutex mutex;
     return std::unique_lock(mutex);
-  }
-
-  FailureError cannot_be_run(int error) const {
-    return FailureError(name_ + ": cannot be run: " + std::generic_category().message(error));
   }
 
   std::string name_;
@@ -231,6 +256,103 @@ void remove_folders_left_in(const fs::path& base) {
     remove_if_left(entry->path());
 }
 
+// What a program reads and where what it prints goes.
+struct Streams {
+  explicit Streams(const ChildCommand& command)
+      : answers(command.folder / "answers"), printed(command.folder / "printed") {
+    std::ofstream(answers) << "y\n";
+  }
+
+  fs::path answers, printed;
+};
+
+// The two descriptors that go with a request: the end of a keeper's life, and where it reports to.
+using Descriptors = std::array<int, 2>;
+
+union Control {  // aligned as the system wants it
+  std::array<char, CMSG_SPACE(sizeof(Descriptors))> bytes;
+  cmsghdr header;
+};
+
+void send_request(int socket, std::string& text, const Descriptors& descriptors) {
+  Control control{};
+  iovec part{text.data(), text.size()};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.bytes.data();
+  message.msg_controllen = control.bytes.size();
+  cmsghdr* const header = CMSG_FIRSTHDR(&message);
+  header->cmsg_level = SOL_SOCKET;
+  header->cmsg_type = SCM_RIGHTS;
+  header->cmsg_len = CMSG_LEN(sizeof(descriptors));
+  std::memcpy(CMSG_DATA(header), descriptors.data(), sizeof(descriptors));
+  while (::sendmsg(socket, &message, MSG_NOSIGNAL) < 0)
+    if (errno != EINTR) throw cannot_be_run("a process", errno);
+}
+
+// Nothing at the end of those who ask.
+std::optional<std::pair<std::string, Descriptors>> received_request(int socket) {
+  ssize_t size = -1;
+  while ((size = ::recv(socket, nullptr, 0, MSG_PEEK | MSG_TRUNC)) < 0 && errno == EINTR) {
+  }
+  if (size <= 0) return std::nullopt;
+  std::string text(static_cast<std::size_t>(size), '\0');
+  Control control{};
+  iovec part{text.data(), text.size()};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.bytes.data();
+  message.msg_controllen = control.bytes.size();
+  while ((size = ::recvmsg(socket, &message, MSG_CMSG_CLOEXEC)) < 0 && errno == EINTR) {
+  }
+  const cmsghdr* const header = size > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
+  if (header == nullptr) return std::nullopt;
+  Descriptors descriptors{};
+  std::memcpy(descriptors.data(), CMSG_DATA(header), sizeof(descriptors));
+  return std::pair(std::move(text), descriptors);
+}
+
+// Takes leave of keepers that have ended. Not by ignoring the signal: the processor time of all is to be this one's.
+void bury(int /*signal*/) {
+  const int error = errno;
+  while (::waitpid(-1, nullptr, WNOHANG) > 0) {
+  }
+  errno = error;
+}
+
+// The process that forks one for each request, for as long as somebody may ask. It has one thread.
+[[noreturn]] void start_what_is_asked_for(int requests, CommandMain main) {
+  ::setpgid(0, 0);  // out of reach of the terminal's signals
+  ::signal(SIGCHLD, bury);
+  while (auto request = received_request(requests)) {
+    auto& [text, descriptors] = *request;
+    std::vector<std::string> words;
+    for (std::size_t begin = 0; begin < text.size(); begin += words.back().size() + 1)
+      words.emplace_back(text.c_str() + begin);
+    Start start{.arguments = {words.begin() + 2, words.end()},
+                .variables = {},
+                .answers = words[0],
+                .printed = words[1],
+                .own = main};
+    const pid_t keeper = ::fork();
+    if (keeper == 0) {
+      ::close(requests);
+      ::signal(SIGCHLD, SIG_DFL);
+      become_keeper(start, descriptors[0], descriptors[1]);
+    }
+    if (keeper < 0) {
+      const KeeperReport failure{.error = errno, .status = 0};
+      [[maybe_unused]] const ssize_t written = ::write(descriptors[1], &failure, sizeof(failure));
+    }
+    for (int& descriptor : descriptors) close_if_open(descriptor);
+  }
+  while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {
+  }
+  ::_exit(0);
+}
+
 }  // namespace
 
 PrivateFolder::PrivateFolder(Monitor& monitor) : monitor_(monitor) {
@@ -258,14 +380,60 @@ PrivateFolder::~PrivateFolder() {
 }
 
 ChildOutcome run_child(const ChildCommand& command, Monitor& monitor) {
-  const fs::path answers = command.folder / "answers", printed = command.folder / "printed";
-  std::ofstream(answers) << "y\n";
-  const Start start{command.arguments, merged_environment(command.environment), answers, printed};
+  const Streams streams(command);
+  const Start start{.arguments = command.arguments,
+                    .variables = merged_environment(command.environment),
+                    .answers = streams.answers,
+                    .printed = streams.printed};
   RunningChild child(start, monitor);
-  ChildOutcome outcome;
-  outcome.exit_code = child.wait();
-  outcome.printed = read_text(printed);
-  return outcome;
+  const int exit_code = child.wait();
+  return {exit_code, read_text(streams.printed)};
+}
+
+OwnCommands::OwnCommands(CommandMain main) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw FailureError("no socket can be made: " + std::generic_category().message(errno));
+  starter_ = ::fork();
+  if (starter_ == 0) {
+    ::close(ends[0]);
+    start_what_is_asked_for(ends[1], main);
+  }
+  const int error = errno;
+  ::close(ends[1]);
+  requests_ = ends[0];
+  if (starter_ >= 0) return;
+  ::close(requests_);
+  throw cannot_be_run("a process", error);
+}
+
+OwnCommands::~OwnCommands() {
+  close_if_open(requests_);
+  while (::waitpid(starter_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+ChildOutcome OwnCommands::run(const ChildCommand& command, Monitor& monitor) const {
+  const Streams streams(command);
+  Pipe life, reports;
+  std::string text = streams.answers.string() + '\0' + streams.printed.string() + '\0';
+  for (const std::string& argument : command.arguments) text.append(argument).push_back('\0');
+  send_request(requests_, text, {life.reads, reports.writes});
+  close_if_open(life.reads);
+  close_if_open(reports.writes);
+  const auto end = [&] {  // which its keeper's is the last of
+    close_if_open(life.writes);
+    KeeperReport ignored;
+    while (::read(reports.reads, &ignored, sizeof(ignored)) > 0 || errno == EINTR) errno = 0;
+  };
+  try {
+    const int exit_code = awaited(reports.reads, command.arguments.front(), monitor);
+    end();
+    return {exit_code, read_text(streams.printed)};
+  } catch (const InterruptedError&) {
+    end();
+    throw;
+  }
 }
 
 }  // namespace aerate

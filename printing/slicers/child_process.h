@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <string>
+#include <sys/types.h>
 #include <utility>
 #include <vector>
 
@@ -44,5 +45,25 @@ struct ChildOutcome {
 // leads a process group, which is killed when the monitor interrupts or this process ends, however it does. Throws FailureError if it cannot be
 // started. May be called by several threads, each with a folder of its own.
 ChildOutcome run_child(const ChildCommand& command, Monitor& monitor);
+
+// What a process does with its arguments, as main; its exit status.
+using CommandMain = int (*)(int argc, char* const* argv);
+
+// Runs commands of this program in processes of their own, without loading it anew for each: they are forked from a copy of this
+// process. To be made before this process has any thread but those that libraries began when they were loaded, and before it has printed anything.
+class OwnCommands {
+ public:
+  explicit OwnCommands(CommandMain main);  // throws FailureError
+  ~OwnCommands();
+  OwnCommands(const OwnCommands&) = delete;
+  OwnCommands& operator=(const OwnCommands&) = delete;
+
+  // As run_child does, which see; nothing is added to the environment. The program is named as the first argument, as ever.
+  ChildOutcome run(const ChildCommand& command, Monitor& monitor) const;
+
+ private:
+  int requests_ = -1;
+  pid_t starter_ = -1;
+};
 
 }  // namespace aerate

@@ -65,10 +65,10 @@ std::string as_argument(const fs::path& path) {
   return path.string().starts_with('-') ? "./" + path.string() : path.string();
 }
 
-ChildCommand command_of(const PlannedJob& job, const fs::path& program, int threads, fs::path folder) {
+ChildCommand command_of(const PlannedJob& job, int threads, fs::path folder) {
   ChildCommand command;
   command.folder = std::move(folder);
-  command.add({program, "hollow", as_argument(job.model), "--output=" + job.paths.result.string(),
+  command.add({"aerate", "hollow", as_argument(job.model), "--output=" + job.paths.result.string(),
                "--json=" + job.paths.report.string(), fmt::format("--threads={}", threads)});
   command.arguments.insert(command.arguments.end(), job.arguments.begin(), job.arguments.end());
   const auto add_file = [&](const char* option, const fs::path& file) {
@@ -98,7 +98,7 @@ JobRecord refused_before(const Error& error) {
 }
 
 // One job, from its start to its record.
-JobRecord run_job(const PlannedJob& job, const fs::path& program, int threads, const fs::path& folder,
+JobRecord run_job(const PlannedJob& job, const RunCommand& run, int threads, const fs::path& folder,
                   const ResultsFolder& results, Monitor& monitor) {
   forget(results.path(), job);
   JobRecord record;
@@ -109,7 +109,7 @@ JobRecord run_job(const PlannedJob& job, const fs::path& program, int threads, c
       throw FailureError(
           fmt::format("{}: cannot be made: {}", job.paths.result.parent_path().string(), error.message()));
     const auto start = std::chrono::steady_clock::now();
-    const ChildOutcome outcome = run_child(command_of(job, program, threads, folder), monitor);
+    const ChildOutcome outcome = run(command_of(job, threads, folder), monitor);
     record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     record.exit_code = outcome.exit_code;
     record.outcome = outcome_of(outcome.exit_code);
@@ -216,7 +216,7 @@ Shares shares_of(const RunBounds& bounds, std::size_t to_do) {
   return {jobs, std::max(1, bounds.threads / jobs)};
 }
 
-void run_jobs(const std::vector<BatchRow*>& to_do, const fs::path& program, const ResultsFolder& results,
+void run_jobs(const std::vector<BatchRow*>& to_do, const RunCommand& run, const ResultsFolder& results,
               const RunBounds& bounds, const std::function<void(const BatchRow&)>& ended, Monitor& monitor) {
   if (to_do.empty()) return;
   const PrivateFolder folder(monitor);
@@ -229,7 +229,7 @@ void run_jobs(const std::vector<BatchRow*>& to_do, const fs::path& program, cons
       fs::create_directory(own);
       while (BatchRow* const row = scheduler.next()) {
         monitor.check_interrupted();
-        JobRecord record = run_job(*row->job, program, shares.threads, own, results, monitor);
+        JobRecord record = run_job(*row->job, run, shares.threads, own, results, monitor);
         scheduler.ended(*row);
         const std::scoped_lock lock(one_at_a_time);
         row->record = std::move(record);
@@ -253,7 +253,7 @@ void run_jobs(const std::vector<BatchRow*>& to_do, const fs::path& program, cons
   }
 }
 
-void run_task(const std::vector<BatchRow*>& rows, const fs::path& program, const ResultsFolder& results,
+void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const ResultsFolder& results,
               int threads, const std::function<void(const BatchRow&)>& ended, Monitor& monitor) {
   const PrivateFolder folder(monitor);
   std::vector<BatchRow*> in_order = rows;
@@ -267,7 +267,7 @@ void run_task(const std::vector<BatchRow*>& rows, const fs::path& program, const
       continue;
     }
     mark_begun(results.path(), job);
-    row->record = run_job(job, program, threads, folder.path(), results, monitor);
+    row->record = run_job(job, run, threads, folder.path(), results, monitor);
     row->is_new = true;
     mark_ended(results.path(), job);
     ended(*row);

@@ -9,6 +9,7 @@
 #include "batch/job_record.h"
 #include "batch/plan_jobs.h"
 #include "core/monitor.h"
+#include "printing/slicers/child_process.h"
 
 namespace aerate::batch {
 
@@ -42,17 +43,17 @@ struct Shares {
 };
 Shares shares_of(const RunBounds& bounds, std::size_t to_do);
 
-// Does them, each in a process of its own, `program hollow ...`. Each row is filled in when its job has ended, and `ended` called with it, one at a
+// Runs a command of this program, in a process of its own: "aerate hollow ...".
+using RunCommand = std::function<ChildOutcome(const ChildCommand&, Monitor&)>;
+
+// Does them, each in a process of its own. Each row is filled in when its job has ended, and `ended` called with it, one at a
 // time and from any thread; it may look at all rows. Throws InterruptedError once all processes that were started have ended; rows of these are as if not begun.
-//   program: this one
-void run_jobs(const std::vector<BatchRow*>& to_do, const std::filesystem::path& program,
-              const ResultsFolder& results, const RunBounds& bounds,
-              const std::function<void(const BatchRow&)>& ended, Monitor& monitor);
+void run_jobs(const std::vector<BatchRow*>& to_do, const RunCommand& run, const ResultsFolder& results,
+              const RunBounds& bounds, const std::function<void(const BatchRow&)>& ended, Monitor& monitor);
 
 // The same for a task of a cluster: one after the other, and a job that cut this task off before as the last one. What another task has done is not done again.
 //   threads: of each
-void run_task(const std::vector<BatchRow*>& rows, const std::filesystem::path& program,
-              const ResultsFolder& results, int threads, const std::function<void(const BatchRow&)>& ended,
-              Monitor& monitor);
+void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const ResultsFolder& results,
+              int threads, const std::function<void(const BatchRow&)>& ended, Monitor& monitor);
 
 }  // namespace aerate::batch

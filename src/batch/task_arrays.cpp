@@ -7,7 +7,8 @@
 namespace aerate::batch {
 namespace {
 
-constexpr double kSecondsOfTask = 60;
+// A task's, as estimated: so few that there are enough tasks for many machines, but more than it takes to begin one.
+constexpr double kMostSeconds = 60, kLeastSeconds = 5, kEnoughTasks = 64;
 
 double memory_class(double bytes) {
   double memory = 1024.0 * 1024 * 1024;
@@ -46,8 +47,9 @@ std::vector<ArrayTask> tasks_of(const std::vector<const BatchRow*>& rows, const 
   std::size_t models = sizes.models == 0 ? rows.size() : sizes.models;
   double seconds = 0;
   for (const BatchRow* const row : rows) seconds += estimated_seconds(*row);
-  // What is asked for goes before a minute.
-  double each = sizes.models == 0 ? kSecondsOfTask : seconds + 1;
+  // What is asked for goes before the estimates.
+  double each =
+      sizes.models == 0 ? std::clamp(seconds / kEnoughTasks, kLeastSeconds, kMostSeconds) : seconds + 1;
   std::vector<ArrayTask> tasks = filled(rows, models, each);
   while (tasks.size() > sizes.most_tasks) {
     models *= 2;

@@ -27,7 +27,7 @@ struct TaskSizes {
 };
 
 // Tasks for the jobs that are yet to be done, in the order in which they are given (the largest first): an array for each doubling of memory from
-// 1 GiB on. A task has as many models as a minute is estimated to do, or more where there would be too many tasks. What has cut
+// 1 GiB on. A task has as many models as 5 to 60 s are estimated to do, a 64th of the batch in between, or more where there would be too many tasks. What has cut
 // a task off before has one of its own. Memory is what estimates say; time is ten times that and a minute, since
 // options decide it as much as sizes.
 //   cut_off: for each of them

@@ -21,6 +21,7 @@
 #include "batch/run_jobs.h"
 #include "batch/summary.h"
 #include "cli/batch_outcome.h"
+#include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/hollow_forms.h"
 #include "cli/interrupt.h"
@@ -126,15 +127,10 @@ class TakenOptions {
   std::vector<const CLI::Option*> options_;
 };
 
-// The program that runs, whatever its file is called by now.
+// This program, by the name that other machines know it by.
 fs::path this_program() {
-  return "/proc/self/exe";
-}
-
-// As other machines know it.
-fs::path this_program_elsewhere() {
   std::error_code error;
-  fs::path program = fs::read_symlink(this_program(), error);
+  fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error) throw FailureError("/proc/self/exe: " + error.message());
   return program;
 }
@@ -220,8 +216,8 @@ struct BatchCommand {
         ->group(kGroup);
     command
         .add_option("--chunk", chunk,
-                    "Models of a task, which does them one after the other (default as many as a minute is "
-                    "estimated to do)")
+                    "Models of a task, which does them one after the other (default by the "
+                    "estimates, for 5 to 60 s)")
         ->check(whole_number_between(1, 100000, "models"))
         ->type_name("N")
         ->group(kGroup);
@@ -303,9 +299,10 @@ struct BatchCommand {
   }
 
   void run() const {
+    require_sense();
+    const OwnCommands commands(exit_status_of);  // before there are threads
     InterruptGuard interrupt;
     TerminalMonitor monitor(interrupt, verbosity());
-    require_sense();
     SlurmEngine cluster(output, slurm_options(), monitor);
     if (is_asking()) {
       ask(cluster);
@@ -317,7 +314,7 @@ struct BatchCommand {
     } else if (is_on_cluster()) {
       run_on_cluster(plan, cluster, monitor);
     } else {
-      run_here(plan, monitor);
+      run_here(plan, commands, monitor);
     }
   }
 
@@ -331,7 +328,7 @@ struct BatchCommand {
     try {
       if (is_waiting) cluster.follow_if_any();
       require_no_cluster_at_work(output, monitor);
-      const bool is_under_way = cluster.submit(plan, retry_failed, this_program_elsewhere());
+      const bool is_under_way = cluster.submit(plan, retry_failed, this_program());
       if (!is_under_way || !is_waiting) return;
       cluster.follow();
     } catch (const InterruptedError&) {
@@ -341,19 +338,19 @@ struct BatchCommand {
     cluster.collect();
   }
 
-  void run_here(const std::vector<PlannedJob>& plan, Monitor& monitor) const {
+  void run_here(const std::vector<PlannedJob>& plan, const OwnCommands& commands, Monitor& monitor) const {
     require_no_cluster_at_work(output, monitor);
     const batch::ResultsFolder results(output, plan, monitor);
     require_no_cluster_at_work(output, monitor);  // that was begun in between
     std::vector<BatchRow> rows = batch::known_rows(plan, output, retry_failed);
     const std::vector<BatchRow*> to_do = batch::rows_to_do(rows);
     if (!is_quiet) tell_known_failures(rows);
-    do_jobs(to_do, rows, results, monitor);
+    do_jobs(to_do, rows, results, commands, monitor);
     finish_batch(rows, output, to_do.size(), is_quiet);
   }
 
   void do_jobs(const std::vector<BatchRow*>& to_do, const std::vector<BatchRow>& rows,
-               const batch::ResultsFolder& results, Monitor& monitor) const {
+               const batch::ResultsFolder& results, const OwnCommands& commands, Monitor& monitor) const {
     using Clock = std::chrono::steady_clock;
     constexpr auto kBetweenSummaries = std::chrono::seconds(10);
     std::size_t ended = 0;
@@ -366,7 +363,10 @@ struct BatchCommand {
       last = Clock::now();
     };
     try {
-      batch::run_jobs(to_do, this_program(), results, bounds(), tell, monitor);
+      const auto run = [&](const ChildCommand& command, Monitor& of_job) {
+        return commands.run(command, of_job);
+      };
+      batch::run_jobs(to_do, run, results, bounds(), tell, monitor);
     } catch (const InterruptedError&) {
       try_to_summarise(rows, output, is_quiet);
       throw Error(ExitCode::interrupted,
@@ -424,9 +424,10 @@ struct TaskCommand {
   }
 
   void run() const {
+    const OwnCommands commands(exit_status_of);
     InterruptGuard interrupt;
     TerminalMonitor monitor(interrupt, Verbosity::normal);
-    run_cluster_task(submission, array, this_program(), monitor);
+    run_cluster_task(submission, array, commands, monitor);
   }
 
   std::string submission;

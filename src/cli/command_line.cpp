@@ -1,7 +1,9 @@
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <iostream>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -94,6 +96,23 @@ void run_command_line(int argc, const char* const* argv) {
     refuse(app, error);
   }
   require_stdout_written();
+}
+
+int exit_status_of(int argc, char* const* argv) {
+  ExitCode code = ExitCode::failure;
+  try {
+    run_command_line(argc, argv);
+    code = ExitCode::done;
+  } catch (const Error& error) {
+    print_error(error.what(), error.hint());
+    code = error.code();
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory; no output was written",
+                "give a larger --max-radius, --min-radius or --tolerance, or a smaller model");
+  } catch (const std::exception& error) {
+    print_error(error.what(), "this should not happen: please report it with the command line");
+  }
+  return static_cast<int>(code);
 }
 
 }  // namespace aerate::cli

@@ -6,4 +6,7 @@ namespace aerate::cli {
 // error. Throws aerate::Error for whatever keeps the command from being done, the command line included.
 void run_command_line(int argc, const char* const* argv);
 
+// The same as a whole process does it: what is thrown is printed as an error, and becomes the exit status.
+int exit_status_of(int argc, char* const* argv);
+
 }  // namespace aerate::cli

@@ -279,7 +279,7 @@ void require_no_cluster_at_work(const fs::path& results, Monitor& monitor) {
                   results.string()));
 }
 
-void run_cluster_task(const fs::path& submission_file, std::size_t array, const fs::path& program,
+void run_cluster_task(const fs::path& submission_file, std::size_t array, const OwnCommands& commands,
                       Monitor& monitor) {
   const Submission submission = batch::read_submission(submission_file);
   const std::string machine = name_of_this_machine();
@@ -307,8 +307,11 @@ void run_cluster_task(const fs::path& submission_file, std::size_t array, const 
   for (BatchRow& row : rows) in_task.push_back(&row);
   const batch::ResultsFolder folder(results, jobs, monitor, batch::Use::together);
   std::cout << fmt::format("{} on {}\n", counted(jobs.size(), "model", "models"), machine) << std::flush;
+  const auto run = [&](const ChildCommand& command, Monitor& of_job) {
+    return commands.run(command, of_job);
+  };
   batch::run_task(
-      in_task, program, folder, submission.threads,
+      in_task, run, folder, submission.threads,
       [](const BatchRow& row) { std::cout << told(row) << "\n"
                                           << std::flush; }, monitor);
 }

@@ -8,6 +8,7 @@
 #include "batch/slurm.h"
 #include "batch/task_arrays.h"
 #include "core/monitor.h"
+#include "printing/slicers/child_process.h"
 
 namespace aerate::cli {
 
@@ -56,7 +57,7 @@ class SlurmEngine {
 void require_no_cluster_at_work(const std::filesystem::path& results, Monitor& monitor);
 
 // What a task of the cluster does, 'aerate batch-task SUBMISSION ARRAY'.
-void run_cluster_task(const std::filesystem::path& submission, std::size_t array,
-                      const std::filesystem::path& program, Monitor& monitor);
+void run_cluster_task(const std::filesystem::path& submission, std::size_t array, const OwnCommands& commands,
+                      Monitor& monitor);
 
 }  // namespace aerate::cli

@@ -108,7 +108,13 @@ class Jobs {
     const ResultsFolder results(folder_.path(), jobs_, monitor);
     rows_ = known_rows(jobs_, results.path(), true);
     run_jobs(
-        rows_to_do(rows_), program, results, bounds, [](const BatchRow&) {}, monitor);
+        rows_to_do(rows_),
+        [&](const ChildCommand& hollow, Monitor& of_job) {
+          ChildCommand command = hollow;
+          command.arguments.front() = program;
+          return run_child(command, of_job);
+        },
+        results, bounds, [](const BatchRow&) {}, monitor);
     std::ifstream log(folder_.path() / "moments");
     int now = 0, most = 0;
     for (std::string word; log >> word;) most = std::max(most, now += word == "begin" ? 1 : -1);

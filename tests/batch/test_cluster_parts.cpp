@@ -40,15 +40,19 @@ std::vector<TaskArray> divided(const Rows& rows, const TaskSizes& sizes = {}) {
   return task_arrays(rows.to_do, std::vector<bool>(rows.to_do.size()), sizes);
 }
 
-TEST(TaskArrays, ATaskHasWhatAMinuteIsEstimatedToDo) {
-  const Rows rows(std::vector<JobEstimate>(100, {.memory_bytes = 1e8, .seconds = 1}));
-  const auto arrays = divided(rows);
+TEST(TaskArrays, ATaskHasA64thOfTheWorkButNeitherTooLittleNorTooMuch) {
+  const auto of = [](std::size_t jobs) {
+    return Rows(std::vector<JobEstimate>(jobs, {.memory_bytes = 1e8, .seconds = 1}));
+  };
+  const auto arrays = divided(of(98));
   ASSERT_EQ(arrays.size(), 1U);
-  ASSERT_EQ(arrays[0].tasks.size(), 2U);
-  EXPECT_EQ(arrays[0].tasks[0].jobs.size(), 60U);
-  EXPECT_EQ(arrays[0].tasks[1].jobs.back(), 99U);
+  ASSERT_EQ(arrays[0].tasks.size(), 20U);
+  EXPECT_EQ(arrays[0].tasks[0].jobs.size(), 5U);
+  EXPECT_EQ(arrays[0].tasks[19].jobs, (std::vector<std::size_t>{95, 96, 97}));
   EXPECT_EQ(arrays[0].memory_bytes, kGib);
-  EXPECT_EQ(arrays[0].seconds, 10 * 60 + 60);
+  EXPECT_EQ(arrays[0].seconds, 10 * 5 + 60);
+  EXPECT_EQ(divided(of(640))[0].tasks.size(), 64U);
+  EXPECT_EQ(divided(of(6000))[0].tasks.size(), 100U);
   // One that takes longer has its own.
   EXPECT_EQ(divided(Rows({{.seconds = 500}, {.seconds = 500}}))[0].tasks.size(), 2U);
 }

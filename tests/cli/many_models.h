@@ -73,8 +73,8 @@ class Batch {
   Job job_;
 };
 
-// Processes of this program that hollow something of a folder.
-inline std::vector<pid_t> jobs_under_way(const fs::path& folder) {
+// Processes of this program that are at work for a folder.
+inline std::vector<pid_t> at_work_for(const fs::path& folder) {
   std::vector<pid_t> found;
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const std::string name = entry.path().filename();
@@ -83,8 +83,7 @@ inline std::vector<pid_t> jobs_under_way(const fs::path& folder) {
     std::stringstream words;
     words << file.rdbuf();
     const std::string line = words.str();
-    if (line.find(std::string("\0hollow\0", 8)) != std::string::npos &&
-        line.find(folder.string()) != std::string::npos)
+    if (line.find(AERATE_EXECUTABLE) != std::string::npos && line.find(folder.string()) != std::string::npos)
       found.push_back(std::stoi(name));
   }
   return found;
@@ -104,6 +103,12 @@ inline std::vector<std::string> temporary_files(const fs::path& folder) {
     if (name.find(".aerate-") != std::string::npos && name != ".aerate-batch") found.push_back(name);
   }
   return found;
+}
+
+// Its name has the process.
+inline pid_t process_that_made(const std::string& temporary_file) {
+  constexpr std::string_view kMark = ".aerate-";
+  return std::stoi(temporary_file.substr(temporary_file.rfind(kMark) + kMark.size()));
 }
 
 }  // namespace aerate::test

@@ -83,7 +83,7 @@ TEST(Batch, AJobThatIsKilledIsARowThatIsTriedAgainOnlyWhenThatIsAskedFor) {
                                            "0.01",         "--max-voids", "500"};
   Process process(batch.command(arguments));
   wait_until([&] { return !temporary_files(batch.results()).empty(); });
-  for (const pid_t job : jobs_under_way(batch.folder())) kill(job, SIGKILL);  // the largest is first
+  kill(process_that_made(temporary_files(batch.results()).front()), SIGKILL);  // the largest is first
   EXPECT_EQ(process.wait().exit_code, kSomeNotDone);
   EXPECT_EQ(batch.row("quick.stl").at("outcome"), "done");
   EXPECT_EQ(batch.row("slow.stl").at("outcome"), "crashed");
@@ -368,7 +368,7 @@ TEST(Batch, InterruptedItEndsItsJobsAndLeavesNothingHalfDone) {
   const ProcessResult result = process.wait();
   EXPECT_EQ(result.exit_code, kInterrupted) << result.err;
   EXPECT_TRUE(contains(result.err, "of 3 models are done"));
-  EXPECT_TRUE(jobs_under_way(batch.folder()).empty());
+  EXPECT_TRUE(at_work_for(batch.folder()).empty());
   EXPECT_EQ(temporary_files(batch.results()), std::vector<std::string>{});
   EXPECT_GT(batch.summary().at("totals").at("yet_to_do"), 0);
 }
@@ -418,7 +418,7 @@ TEST(Batch, KilledAtAnyMomentItGoesOnWhereItWas) {
     std::this_thread::sleep_for(std::chrono::milliseconds(random() % 200));
     process.send(SIGKILL);
     process.wait();
-    wait_until([&] { return jobs_under_way(batch.folder()).empty(); });
+    wait_until([&] { return at_work_for(batch.folder()).empty(); });
     for (const auto& [name, bytes] : expected) {
       if (fs::exists(batch.results() / name)) {
         EXPECT_EQ(batch.result(name), bytes) << name;

@@ -131,7 +131,7 @@ TEST_F(BatchOnSlurm, WhatANodeThatFailsHadUnderWayIsDoneAgainAndNothingElse) {
   ASSERT_EQ(submit(slow).exit_code, 0);
   wait_until([&] { return records().size() >= 2; });
   cluster_.kill_node();
-  wait_until([&] { return jobs_under_way(batch_.folder()).empty(); });
+  wait_until([&] { return at_work_for(batch_.folder()).empty(); });
   const auto before = records();
   ASSERT_LT(before.size(), kModels);
   cluster_.start_node();
@@ -169,7 +169,7 @@ TEST_F(BatchOnSlurm, CancelledItLeavesWhatIsDoneAndGoesOnFromThere) {
   const ProcessResult cancelled = ask("--cancel");
   EXPECT_EQ(cancelled.exit_code, 0) << cancelled.err;
   EXPECT_TRUE(contains(cancelled.out, "was cancelled"));
-  EXPECT_TRUE(jobs_under_way(batch_.folder()).empty());
+  EXPECT_TRUE(at_work_for(batch_.folder()).empty());
   EXPECT_EQ(temporary_files(batch_.results()), std::vector<std::string>{});
   EXPECT_GT(batch_.summary().at("totals").at("yet_to_do"), 0);
   EXPECT_EQ(ask("--collect").exit_code,
