@@ -115,7 +115,7 @@ double HoleShowing::of(const Tube& hole) const {
     if (along <= 0) continue;
     const double weight = (dot(view, up_) < 0 ? kFromBelow : 1) * (dot(view, back_) > 0.5 ? kFromBack : 1);
     all += along;
-    if (!clearance_.first_hit(start, view, far_off)) seen += weight * along;
+    if (!clearance_.is_hit(start, view, far_off)) seen += weight * along;
   }
   return all > 0 ? seen / all : 1;
 }

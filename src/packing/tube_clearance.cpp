@@ -110,6 +110,20 @@ std::optional<double> TubeClearance::first_hit(Vec3d start, Vec3d direction, dou
   return metric.best;
 }
 
+bool TubeClearance::is_hit(Vec3d start, Vec3d direction, double longest) const {
+  // The first that is found ends the walk: nothing is nearer than that.
+  struct AnyHit : RayMetric {
+    using RayMetric::RayMetric;
+    void visit(std::uint32_t i) {
+      const double before = best;
+      RayMetric::visit(i);
+      if (best < before) best = -kInfinity;
+    }
+  } metric(start, direction, longest, bvh_.facets);
+  bvh_.walk(metric);
+  return metric.best < longest;
+}
+
 Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
   const kernels::NearestFacet nearest = bvh_.nearest(point, kInfinity);
   return kernels::nearest_point_on_facet(point, bvh_.facets[nearest.facet]).point;

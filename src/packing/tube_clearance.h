@@ -29,6 +29,9 @@ class TubeClearance {
   // through an edge may miss both of its triangles.
   std::optional<double> first_hit(Vec3d start, Vec3d direction, double longest) const;
 
+  // Whether there is any: as first_hit, at less cost.
+  bool is_hit(Vec3d start, Vec3d direction, double longest) const;
+
   // The point of the surface nearest to a point, and the outward normal of the triangle there.
   Vec3d nearest_on_surface(Vec3d point) const;
   Vec3d normal_near(Vec3d point) const;

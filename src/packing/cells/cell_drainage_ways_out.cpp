@@ -76,7 +76,7 @@ bool WaysOut::is_sound(const CellWayOut& way) const {
     // No void again beyond where it left its own.
     const auto left = surfaces_.voids().first_hit(start, axis, 2 * longest_);
     const Vec3d beyond = start + axis * (left.value_or(0) + 1e-4);
-    if (!left || surfaces_.voids().first_hit(beyond, axis, std::max(0.0, *out - *left))) return false;
+    if (!left || surfaces_.voids().is_hit(beyond, axis, std::max(0.0, *out - *left))) return false;
   }
   if (first_out < way.last + kClearance) return false;
   const Tube outside{tube.start + axis * way.first, tube.end, radius_};
