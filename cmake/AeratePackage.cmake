@@ -31,4 +31,15 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/debian-files.cmake")
 set(CPACK_AERATE_PACKAGING "${PROJECT_SOURCE_DIR}/packaging")  # for that script
+
+# The Python module is for the interpreter of one version. Who has no use for it needs none.
+if(TARGET aerate_python)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  string(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS ", python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR})"
+    ", python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+  foreach(script postinst prerm)
+    configure_file("packaging/debian-${script}" "${PROJECT_BINARY_DIR}/debian/${script}" COPYONLY)
+    list(APPEND CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/debian/${script}")
+  endforeach()
+endif()
 include(CPack)

@@ -12,15 +12,11 @@ constexpr std::size_t kMostShown = 70;  // characters of a description beside an
 
 constexpr const char* kMade = "made from the program's own options";
 
-// In single quotes, for all three shells but that fish has another way to write one inside.
-std::string quoted(std::string_view text, std::string_view quote_inside) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string(quote_inside) : std::string(1, c);
-  return result + "'";
-}
-
+// In single quotes, for bash and zsh.
 std::string quoted(std::string_view text) {
-  return quoted(text, "'\\''");
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
 }
 
 bool is_flag(const OptionWords& option) {
@@ -30,12 +26,14 @@ bool is_flag(const OptionWords& option) {
 // "stl stp": without their points.
 std::vector<std::string> bare(const std::vector<std::string>& endings) {
   std::vector<std::string> result;
+  result.reserve(endings.size());
   for (const std::string& ending : endings) result.push_back(ending.substr(1));
   return result;
 }
 
 std::vector<std::string> names_of(const std::vector<CommandWords>& commands) {
   std::vector<std::string> names;
+  names.reserve(commands.size());
   for (const CommandWords& command : commands) names.push_back(command.name);
   return names;
 }
@@ -171,7 +169,12 @@ std::string zsh_argument(const OptionWords& argument) {
 // ---- fish
 
 std::string fish_quoted(std::string_view text) {
-  return quoted(text, "\\'");
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + "'";
 }
 
 constexpr const char* kFishBegin =

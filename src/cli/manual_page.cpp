@@ -80,7 +80,7 @@ std::string usage_of(const OptionWords& option) {
   if (option.names.empty()) return italic(option.value) + (option.form.is_list ? " ..." : "");
   std::vector<std::string> names;
   for (const std::string& name : option.names) names.push_back(bold(name));
-  const std::string text = fmt::format("{}", fmt::join(names, ", "));
+  std::string text = fmt::format("{}", fmt::join(names, ", "));
   if (option.value.empty()) return text;
   if (option.form.may_be_bare) return fmt::format("{}[={}]", text, italic(option.value));
   return fmt::format("{} {}", text, italic(option.value));
