@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """What `cmake --install` puts where: test_install.py BUILD_FOLDER"""
+import os
 import shutil
 import subprocess
 import sys
@@ -56,6 +57,31 @@ class Install(unittest.TestCase):
         if shutil.which("desktop-file-validate"):
             checked = subprocess.run(["desktop-file-validate", entry], capture_output=True, text=True)
             self.assertEqual((checked.returncode, checked.stdout + checked.stderr), (0, ""))
+
+    def test_shells_find_the_completions_by_themselves(self):
+        share = self.folder / "share"
+        plain = Path(self.temporary.name) / "share"  # bash-completion splits its variable at blanks
+        plain.symlink_to(share)
+        asked = 0
+        if shutil.which("fish"):  # which asks only for commands that are there
+            done = subprocess.run(["fish", "-c", 'complete -C "aerate hol"'], capture_output=True, text=True,
+                                  env={**os.environ, "PATH": f"{self.folder}/bin:{os.environ['PATH']}",
+                                       "XDG_DATA_DIRS": f"{share}:/usr/share", "HOME": self.temporary.name})
+            self.assertTrue(done.stdout.startswith("hollow\t"), done.stdout + done.stderr)
+            asked += 1
+        loader = Path("/usr/share/bash-completion/bash_completion")
+        if loader.is_file():
+            done = subprocess.run(["bash", "--norc", "-c", f". {loader}; _completion_loader aerate; complete -p aerate"], capture_output=True,
+                                  text=True, env={**os.environ, "BASH_COMPLETION_USER_DIR": f"{plain}/bash-completion"})
+            self.assertEqual(done.stdout, "complete -F _aerate aerate\n", done.stderr)
+            asked += 1
+        if shutil.which("zsh"):
+            command = f"fpath=('{share}/zsh/site-functions' $fpath); autoload -Uz compinit; compinit -D -u; print $_comps[aerate]"
+            done = subprocess.run(["zsh", "-f", "-c", command], capture_output=True, text=True)
+            self.assertEqual(done.stdout, "_aerate\n", done.stderr)
+            asked += 1
+        if not asked:
+            self.skipTest("neither fish nor zsh nor bash-completion is installed")
 
 
 if __name__ == "__main__":
