@@ -47,17 +47,26 @@ files() {
   find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /tmp -o -path /run -o -path /var/lib/apt -o -path /var/lib/dpkg -o \
     -path /var/log -o -path /var/cache \) -prune -o -print | sort
 }
+# The Python module is for who has Python.
+has_module=0
+if dpkg-deb --contents /tmp/aerate.deb | grep -q /dist-packages/aerate/; then
+  has_module=1
+  apt-get install -qq --no-install-recommends python3-numpy >/tmp/log 2>&1 || { cat /tmp/log; exit 1; }
+fi
 files >/tmp/before
 apt-get install -qq --no-install-recommends /tmp/aerate.deb >/tmp/log 2>&1 || { cat /tmp/log; exit 1; }
 dpkg --verify aerate
 aerate --version
 aerate hollow /tmp/bunny.stl -o /tmp/hollow.stl --picture /tmp/bunny.png --view /tmp/bunny.html --quiet
-[ -s /tmp/bunny.png ] && [ -s /tmp/bunny.html ]
+[ -s /tmp/bunny.png ]
+[ -s /tmp/bunny.html ]
 for page in aerate aerate-hollow aerate-batch; do gzip -t /usr/share/man/man1/$page.1.gz; done
 [ -s /usr/share/bash-completion/completions/aerate ]
 [ -s /usr/share/zsh/vendor-completions/_aerate ]
 [ -s /usr/share/fish/vendor_completions.d/aerate.fish ]
-[ -s /usr/share/applications/aerate-studio.desktop ] && [ -s /usr/share/icons/hicolor/scalable/apps/aerate.svg ]
+[ -s /usr/share/applications/aerate-studio.desktop ]
+[ -s /usr/share/icons/hicolor/scalable/apps/aerate.svg ]
+[ $has_module = 0 ] || python3 -c 'import aerate; print("Python module", aerate.__version__)'
 apt-get purge -qq --autoremove aerate >/tmp/log 2>&1 || { cat /tmp/log; exit 1; }
 files >/tmp/after
 diff /tmp/before /tmp/after
