@@ -22,8 +22,8 @@ struct OptionWords {
   bool has_choices_alone = false;     // it takes nothing else
   std::vector<std::string> choices;   // values that can be named
   ValueKind kind = ValueKind::other;  // of what it takes
-  std::vector<std::string>
-      endings;  // ".stl": of the files that it takes, none for any; in the order of its description
+  // ".stl": of the files that it takes, in the order of its description; none for any.
+  std::vector<std::string> endings;
 };
 
 struct CommandWords {
@@ -34,8 +34,8 @@ struct CommandWords {
 };
 
 struct ProgramWords {
-  CommandWords
-      program;  // its own options may stand before a command and, but where that has one of the name, after it
+  // Its own options may stand before a command and, but where that has one of the name, after it.
+  CommandWords program;
   std::vector<CommandWords> commands;
   std::string version;
 };
