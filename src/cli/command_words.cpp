@@ -145,7 +145,8 @@ ProgramWords words_of_program() {
   words.version = AERATE_VERSION;
   visit_program([&](const CLI::App& app) {
     words.program = words_of(app);
-    for (const CLI::App* command : app.get_subcommands(nullptr)) words.commands.push_back(words_of(*command));
+    for (const CLI::App* command : app.get_subcommands(nullptr))
+      if (!command->get_group().empty()) words.commands.push_back(words_of(*command));  // else not shown
   });
   return words;
 }

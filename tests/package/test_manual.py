@@ -69,7 +69,7 @@ class Manual(unittest.TestCase):
     def test_names_arguments_and_exit_status(self):
         text, _ = shown(PAGES / "aerate-batch.1", 80)
         self.assertIn("aerate-batch - hollow many models", re.sub(r"\s+", " ", text))
-        self.assertIn("aerate batch [OPTIONS] MODELS ...", text)
+        self.assertRegex(text, r"\n +aerate batch \[OPTIONS\] \[?MODELS \.\.\.")
         text, _ = shown(PAGES / "aerate-hollow.1", 80)
         self.assertIn("aerate hollow [OPTIONS] MODEL\n", text)
         self.assertRegex(text, r"\nEXIT STATUS\n +0 +done\n")
