@@ -44,17 +44,17 @@ void make_folder(const fs::path& folder) {
 }
 
 // Until another batch ends, or what a killed one started.
-int locked(const fs::path& folder) {
-  constexpr std::chrono::seconds kLongest(5);
+int locked(const fs::path& folder, Use use) {
+  const std::chrono::seconds longest(use == Use::alone ? 5 : 60);
   constexpr std::chrono::milliseconds kPause(20);
   const fs::path file = folder / "lock";
   const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock < 0) throw cannot_be_used(folder, std::generic_category().message(errno));
   const auto start = std::chrono::steady_clock::now();
-  while (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+  while (::flock(lock, (use == Use::alone ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0) {
     const int error = errno;
     if (error == EINTR) continue;
-    if (error != EWOULDBLOCK || std::chrono::steady_clock::now() - start > kLongest) {
+    if (error != EWOULDBLOCK || std::chrono::steady_clock::now() - start > longest) {
       ::close(lock);
       if (error != EWOULDBLOCK) throw cannot_be_used(folder, std::generic_category().message(error));
       throw FailureError(fmt::format("{}: another batch is at work there", folder.parent_path().string()),
@@ -86,6 +86,10 @@ bool is_left(const std::string& name, const std::set<std::string>& stems) {
 std::string stem_of_record(const PlannedJob& job) {
   constexpr std::size_t kDigits = 32;
   return digest_of((job.name.parent_path() / job.name.stem()).string()).substr(0, kDigits);
+}
+
+fs::path mark_of(const fs::path& results, const PlannedJob& job) {
+  return state_folder(results) / (stem_of_record(job) + ".begun");
 }
 
 Outcome outcome_called(const std::string& name) {
@@ -130,12 +134,12 @@ const char* name_of(Outcome outcome) {
   return "not done";
 }
 
-ResultsFolder::ResultsFolder(fs::path results, const std::vector<PlannedJob>& jobs, Monitor& monitor)
+ResultsFolder::ResultsFolder(fs::path results, const std::vector<PlannedJob>& jobs, Monitor& monitor, Use use)
     : results_(std::move(results)), jobs_(jobs) {
-  make_folder(results_ / kStateFolder);
+  make_folder(state_folder(results_));
   monitor.check_interrupted();
-  lock_ = locked(results_ / kStateFolder);
-  remove_left_files();
+  lock_ = locked(state_folder(results_), use);
+  if (use == Use::alone) remove_left_files();
 }
 
 ResultsFolder::~ResultsFolder() {
@@ -160,12 +164,16 @@ void ResultsFolder::remove_left_files() const {
   }
 }
 
+fs::path state_folder(const fs::path& results) {
+  return results / kStateFolder;
+}
+
 fs::path record_path(const fs::path& results, const PlannedJob& job) {
-  return results / kStateFolder / (stem_of_record(job) + ".json");
+  return state_folder(results) / (stem_of_record(job) + ".json");
 }
 
 fs::path thumbnail_path(const fs::path& results, const PlannedJob& job) {
-  return results / kStateFolder / (stem_of_record(job) + ".png");
+  return state_folder(results) / (stem_of_record(job) + ".png");
 }
 
 std::optional<JobRecord> known_record(const fs::path& results, const PlannedJob& job) {
@@ -241,6 +249,21 @@ void keep(const fs::path& results, const PlannedJob& job, const JobRecord& recor
   PendingFile file(record_path(results, job));
   write_bytes(json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n", file);
   file.commit();
+  mark_ended(results, job);
+}
+
+void mark_begun(const fs::path& results, const PlannedJob& job) {
+  write_bytes("", mark_of(results, job));
+}
+
+void mark_ended(const fs::path& results, const PlannedJob& job) {
+  std::error_code ignored;
+  fs::remove(mark_of(results, job), ignored);
+}
+
+bool is_marked_begun(const fs::path& results, const PlannedJob& job) {
+  std::error_code ignored;
+  return fs::exists(mark_of(results, job), ignored);
 }
 
 void read_report(const fs::path& report, JobRecord& record) {

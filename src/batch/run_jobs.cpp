@@ -253,4 +253,25 @@ void run_jobs(const std::vector<BatchRow*>& to_do, const fs::path& program, cons
   }
 }
 
+void run_task(const std::vector<BatchRow*>& rows, const fs::path& program, const ResultsFolder& results,
+              int threads, const std::function<void(const BatchRow&)>& ended, Monitor& monitor) {
+  const PrivateFolder folder(monitor);
+  std::vector<BatchRow*> in_order = rows;
+  std::ranges::stable_partition(
+      in_order, [&](const BatchRow* row) { return !is_marked_begun(results.path(), *row->job); });
+  for (BatchRow* const row : in_order) {
+    monitor.check_interrupted();
+    const PlannedJob& job = *row->job;
+    if (auto known = known_record(results.path(), job); known) {
+      row->record = *std::move(known);
+      continue;
+    }
+    mark_begun(results.path(), job);
+    row->record = run_job(job, program, threads, folder.path(), results, monitor);
+    row->is_new = true;
+    mark_ended(results.path(), job);
+    ended(*row);
+  }
+}
+
 }  // namespace aerate::batch

@@ -49,4 +49,10 @@ void run_jobs(const std::vector<BatchRow*>& to_do, const std::filesystem::path& 
               const ResultsFolder& results, const RunBounds& bounds,
               const std::function<void(const BatchRow&)>& ended, Monitor& monitor);
 
+// The same for a task of a cluster: one after the other, and a job that cut this task off before as the last one. What another task has done is not done again.
+//   threads: of each
+void run_task(const std::vector<BatchRow*>& rows, const std::filesystem::path& program,
+              const ResultsFolder& results, int threads, const std::function<void(const BatchRow&)>& ended,
+              Monitor& monitor);
+
 }  // namespace aerate::batch

@@ -20,12 +20,14 @@
 #include "batch/plan_jobs.h"
 #include "batch/run_jobs.h"
 #include "batch/summary.h"
+#include "cli/batch_outcome.h"
 #include "cli/commands.h"
 #include "cli/hollow_forms.h"
 #include "cli/interrupt.h"
 #include "cli/numbers.h"
 #include "cli/option_form.h"
 #include "cli/process_options.h"
+#include "cli/slurm_engine.h"
 #include "cli/terminal.h"
 #include "core/error.h"
 #include "core/listed.h"
@@ -44,10 +46,8 @@ using batch::OptionRule;
 using batch::Outcome;
 using batch::PlannedJob;
 
-// Exit status of a batch beside those of all commands.
-constexpr ExitCode kSomeNotDone{6}, kNoneDone{7};
-
-constexpr const char* kVersion = "aerate " AERATE_VERSION;
+// Engines.
+constexpr const char *kLocal = "local", *kSlurm = "slurm";
 
 // Those of 'aerate hollow' that the batch has in a form of its own, since each model has files of its own.
 constexpr std::array<std::string_view, 8> kNotTakenOver{"help", "output", "json",    "picture",
@@ -126,27 +126,17 @@ class TakenOptions {
   std::vector<const CLI::Option*> options_;
 };
 
-std::string in_time(double seconds) {
-  if (seconds < 120) return fmt::format("{:.1f} s", seconds);
-  return seconds < 7200 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.1f} h", seconds / 3600);
-}
-
-// A row in words.
-std::string told(const BatchRow& row) {
-  const batch::JobRecord& record = row.record;
-  const std::string model = printable(row.job->model.string());
-  if (record.outcome != Outcome::done)
-    return fmt::format("{}: {}{}: {}", name_of(record.outcome), model,
-                       row.job->origin.empty() ? "" : fmt::format(" ({})", printable(row.job->origin)),
-                       printable(record.message));
-  const auto& share = record.figures.removed_percent;
-  return fmt::format("done: {} ({}{})", printable(row.job->name.string()),
-                     share ? fmt::format("{:.1f} % removed, ", *share) : "", in_time(record.seconds));
-}
-
 // The program that runs, whatever its file is called by now.
 fs::path this_program() {
   return "/proc/self/exe";
+}
+
+// As other machines know it.
+fs::path this_program_elsewhere() {
+  std::error_code error;
+  fs::path program = fs::read_symlink(this_program(), error);
+  if (error) throw FailureError("/proc/self/exe: " + error.message());
+  return program;
 }
 
 struct BatchCommand {
@@ -156,7 +146,6 @@ struct BatchCommand {
             "MODELS", places,
             "Models, folders of models, and manifests (.csv or .jsonl): tables whose columns are 'model', "
             "'output' and long names of the options below, which are set for that model")
-        ->required()
         ->type_name("");
     command
         .add_option("-o,--output", output,
@@ -188,8 +177,54 @@ struct BatchCommand {
                      "Only say what would be done, with estimates of memory and time");
     command.add_flag("--retry-failed", retry_failed,
                      "Try those again that were not done; otherwise they are when something changed");
+    add_engine(command);
     command.add_flag("--quiet", is_quiet, "No line for each model, no notices; only errors");
     command.fallthrough();
+  }
+
+  void add_engine(CLI::App& command) {
+    constexpr const char* kGroup = "On a cluster (Slurm)";
+    const auto add = [&](const char* name_of_option, auto& value, const char* what, const char* type) {
+      command.add_option(name_of_option, value, what)->type_name(type)->group(kGroup);
+    };
+    command
+        .add_option(
+            "--engine", engine,
+            "What does the work: this machine (local), or a Slurm cluster as arrays of tasks (slurm); the "
+            "folders have to be there under the same names on all its nodes")
+        ->check(CLI::IsMember(std::vector<std::string>{kLocal, kSlurm}))
+        ->type_name("ENGINE")
+        ->default_str(kLocal)
+        ->group(kGroup);
+    command
+        .add_flag("--wait", is_waiting,
+                  "Wait for the cluster, then write the summary; otherwise return at once")
+        ->group(kGroup);
+    command
+        .add_flag("--status", is_status, "How far the cluster is with -o FOLDER; no models are named then")
+        ->group(kGroup);
+    command.add_flag("--collect", is_collect, "Write the summary of what the cluster has done by now")
+        ->group(kGroup);
+    command.add_flag("--cancel", is_cancel, "End the cluster's tasks; what is done stays")->group(kGroup);
+    add("--partition", partition, "The partition that tasks go to", "NAME");
+    add("--account", account, "The account that they are for", "NAME");
+    command
+        .add_option(
+            "--sbatch-option", sbatch_options,
+            "One more option for 'sbatch' (--sbatch-option=--qos=low), which goes before the batch's own; "
+            "may be repeated")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->type_name("OPTION")
+        ->group(kGroup);
+    command
+        .add_option("--chunk", chunk,
+                    "Models of a task, which does them one after the other (default as many as a minute is "
+                    "estimated to do)")
+        ->check(whole_number_between(1, 100000, "models"))
+        ->type_name("N")
+        ->group(kGroup);
   }
 
   Verbosity verbosity() const { return is_quiet ? Verbosity::quiet : Verbosity::normal; }
@@ -231,28 +266,90 @@ struct BatchCommand {
          .pictures = pictures,
          .pages = pages,
          .plugs = plugs,
-         .version = kVersion},
+         .version = kBatchVersion},
         hollow_options.rules(),
         [this](const std::vector<std::string>& arguments) { return understand(arguments); }, monitor);
+  }
+
+  bool is_on_cluster() const { return engine == kSlurm; }
+
+  // What is asked of a batch that is with the cluster already, instead of beginning one.
+  bool is_asking() const { return is_status || is_collect || is_cancel; }
+
+  void require_sense() const {
+    if (places.empty() != is_asking())
+      throw UsageError(
+          places.empty() ? "MODELS is required" : "--status, --collect and --cancel take no models",
+          "see 'aerate batch --help'");
+    if (is_status + is_collect + is_cancel > 1)
+      throw UsageError("--status, --collect and --cancel ask for different things", "give one of them");
+    if (is_asking() && (is_waiting || is_dry_run))
+      throw UsageError("--status, --collect and --cancel begin no batch", "leave out --wait and --dry-run");
+    const bool has_cluster_options =
+        is_waiting || !partition.empty() || !account.empty() || !sbatch_options.empty() || chunk;
+    if (!is_on_cluster() && has_cluster_options && !is_asking())
+      throw UsageError("--wait, --partition, --account, --sbatch-option and --chunk are for a cluster",
+                       "give --engine slurm, or leave them out");
+  }
+
+  SlurmOptions slurm_options() const {
+    return {.request = {.partition = partition,
+                        .account = account,
+                        .options = sbatch_options,
+                        .most_tasks_at_a_time = jobs ? static_cast<int>(*jobs) : 0},
+            .models_of_task = chunk ? static_cast<std::size_t>(*chunk) : 0,
+            .threads = threads ? static_cast<int>(*threads) : 1,
+            .is_quiet = is_quiet};
   }
 
   void run() const {
     InterruptGuard interrupt;
     TerminalMonitor monitor(interrupt, verbosity());
-    const std::vector<PlannedJob> plan = planned(monitor);
-    if (is_dry_run) {
-      tell_plan(plan);
+    require_sense();
+    SlurmEngine cluster(output, slurm_options(), monitor);
+    if (is_asking()) {
+      ask(cluster);
       return;
     }
+    const std::vector<PlannedJob> plan = planned(monitor);
+    if (is_dry_run) {
+      tell_plan(plan, cluster);
+    } else if (is_on_cluster()) {
+      run_on_cluster(plan, cluster, monitor);
+    } else {
+      run_here(plan, monitor);
+    }
+  }
+
+  void ask(SlurmEngine& cluster) const {
+    if (is_status) cluster.status();
+    if (is_collect) cluster.collect();
+    if (is_cancel) cluster.cancel();
+  }
+
+  void run_on_cluster(const std::vector<PlannedJob>& plan, SlurmEngine& cluster, Monitor& monitor) const {
+    try {
+      if (is_waiting) cluster.follow_if_any();
+      require_no_cluster_at_work(output, monitor);
+      const bool is_under_way = cluster.submit(plan, retry_failed, this_program_elsewhere());
+      if (!is_under_way || !is_waiting) return;
+      cluster.follow();
+    } catch (const InterruptedError&) {
+      throw Error(ExitCode::interrupted, "interrupted; what the cluster was given it goes on with",
+                  fmt::format("'aerate batch -o {} --status' says how far it is, --cancel ends it", output));
+    }
+    cluster.collect();
+  }
+
+  void run_here(const std::vector<PlannedJob>& plan, Monitor& monitor) const {
+    require_no_cluster_at_work(output, monitor);
     const batch::ResultsFolder results(output, plan, monitor);
+    require_no_cluster_at_work(output, monitor);  // that was begun in between
     std::vector<BatchRow> rows = batch::known_rows(plan, output, retry_failed);
     const std::vector<BatchRow*> to_do = batch::rows_to_do(rows);
-    if (!is_quiet)
-      for (const BatchRow& row : rows)
-        if (row.record.outcome != Outcome::done && row.record.outcome != Outcome::not_done)
-          std::cout << told(row) << "\n";
+    if (!is_quiet) tell_known_failures(rows);
     do_jobs(to_do, rows, results, monitor);
-    finish(rows, to_do.size());
+    finish_batch(rows, output, to_do.size(), is_quiet);
   }
 
   void do_jobs(const std::vector<BatchRow*>& to_do, const std::vector<BatchRow>& rows,
@@ -265,52 +362,20 @@ struct BatchCommand {
       ++ended;
       if (!is_quiet) std::cout << fmt::format("[{}/{}] {}\n", ended, to_do.size(), told(row)) << std::flush;
       if (Clock::now() - last < kBetweenSummaries) return;
-      try_to_summarise(rows);
+      try_to_summarise(rows, output, is_quiet);
       last = Clock::now();
     };
     try {
       batch::run_jobs(to_do, this_program(), results, bounds(), tell, monitor);
     } catch (const InterruptedError&) {
-      try_to_summarise(rows);
+      try_to_summarise(rows, output, is_quiet);
       throw Error(ExitCode::interrupted,
                   fmt::format("interrupted: {} of {} models are done", counts_of(rows).done, rows.size()),
                   "the same command goes on from there");
     }
   }
 
-  // On the way, where it is no loss if it cannot be.
-  void try_to_summarise(const std::vector<BatchRow>& rows) const {
-    try {
-      write_summary(rows, output, kVersion);
-    } catch (const FailureError& error) {
-      if (!is_quiet) print_note(error.what());
-    }
-  }
-
-  void finish(const std::vector<BatchRow>& rows, std::size_t in_this_run) const {
-    const batch::Counts counts = counts_of(rows);
-    const bool is_all = counts.done == rows.size();
-    if (is_all) {
-      write_summary(rows, output, kVersion);
-    } else {
-      try_to_summarise(rows);
-    }
-    const fs::path page = fs::path(output) / "summary.html";
-    if (!is_quiet)
-      std::cout << fmt::format("{} of {} {} done, {} in this run; {}\n", counts.done,
-                               counted(rows.size(), "model", "models"), rows.size() == 1 ? "is" : "are",
-                               in_this_run, printable(page.string()));
-    require_stdout_written();
-    if (is_all) return;
-    throw Error(
-        counts.done > 0 ? kSomeNotDone : kNoneDone,
-        fmt::format("{} of {} could not be hollowed", counts.not_done,
-                    counted(rows.size(), "model", "models")),
-        fmt::format("{} has the reasons; they are tried again when something changed, or with --retry-failed",
-                    page.string()));
-  }
-
-  void tell_plan(const std::vector<PlannedJob>& plan) const {
+  void tell_plan(const std::vector<PlannedJob>& plan, const SlurmEngine& cluster) const {
     std::vector<BatchRow> rows = batch::known_rows(plan, output, retry_failed);
     double seconds = 0, most_memory = 0;
     const std::vector<BatchRow*> to_do = batch::rows_to_do(rows);
@@ -329,7 +394,8 @@ struct BatchCommand {
     }
     const batch::Counts counts = counts_of(rows);
     std::cout << fmt::format("{} to do, {} done, {} not", to_do.size(), counts.done, counts.not_done);
-    if (!to_do.empty()) {
+    if (!to_do.empty() && is_on_cluster()) std::cout << "; " << cluster.in_words(to_do);
+    if (!to_do.empty() && !is_on_cluster()) {
       const batch::Shares shares = batch::shares_of(bounds(), to_do.size());
       std::cout << fmt::format(
           "; about {}, {} at a time with {}, {} each at most", in_time(seconds / shares.jobs), shares.jobs,
@@ -344,7 +410,27 @@ struct BatchCommand {
   std::string output, name;
   bool is_recursive = false, pictures = false, pages = false, plugs = false;
   bool is_dry_run = false, retry_failed = false, is_quiet = false;
-  std::optional<double> jobs, threads;
+  std::optional<double> jobs, threads, chunk;
+  std::string engine = kLocal, partition, account;
+  std::vector<std::string> sbatch_options;
+  bool is_waiting = false, is_status = false, is_collect = false, is_cancel = false;
+};
+
+// What tasks of a cluster run.
+struct TaskCommand {
+  explicit TaskCommand(CLI::App& command) {
+    command.add_option("SUBMISSION", submission, "")->required();
+    command.add_option("ARRAY", array, "")->required();
+  }
+
+  void run() const {
+    InterruptGuard interrupt;
+    TerminalMonitor monitor(interrupt, Verbosity::normal);
+    run_cluster_task(submission, array, this_program(), monitor);
+  }
+
+  std::string submission;
+  std::size_t array = 0;
 };
 
 }  // namespace
@@ -360,6 +446,8 @@ void add_batch_command(CLI::App& app, const ConfigFile& /*config*/) {
       "Exit status: 0 all are done, 6 some are not, 7 none is; 1, 2 and 3 as for other commands, before any "
       "is begun;\n"
       "130 interrupted, after what was under way has been stopped.");
+  CLI::App& task = *app.add_subcommand("batch-task", "")->group("");
+  task.callback([job = std::make_shared<TaskCommand>(task)] { job->run(); });
 }
 
 }  // namespace aerate::cli
