@@ -4,6 +4,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,28 @@ std::string version_and_devices() {
   return text;
 }
 
+struct Program {
+  Program() {
+    app.set_version_flag("--version", version_and_devices);
+    app.footer(kFooter);
+    app.require_subcommand(1);
+    config.emplace(app);
+    add_hollow_command(app, *config);
+    add_pack_command(app, *config);
+    add_inspect_command(app, *config);
+    add_slice_command(app, *config);
+    add_hook_command(app, *config);
+    add_batch_command(app, *config);
+    add_studio_command(app, *config);
+  }
+
+  CLI::App app{
+      "Packs disjoint spheres inside a printable model, removes them, or the cells round them, as internal\n"
+      "voids, and writes a watertight model for any slicer.",
+      "aerate"};
+  std::optional<ConfigFile> config;  // made after the options that are listed before its own
+};
+
 }  // namespace
 
 void refuse(const CLI::App& app, const CLI::ParseError& error) {
@@ -68,32 +91,20 @@ void refuse(const CLI::App& app, const CLI::ParseError& error) {
   throw refusal;
 }
 
+void visit_program(const std::function<void(const CLI::App&)>& visit) {
+  visit(Program().app);
+}
+
 void run_command_line(int argc, const char* const* argv) {
-  CLI::App app(
-      "Packs disjoint spheres inside a printable model, removes them, or the cells round them, as internal\n"
-      "voids, and writes a watertight model for any slicer.",
-      "aerate");
-  app.set_version_flag("--version", version_and_devices);
-  app.footer(kFooter);
-  app.require_subcommand(1);
-
-  const ConfigFile config(app);
-  add_hollow_command(app, config);
-  add_pack_command(app, config);
-  add_inspect_command(app, config);
-  add_slice_command(app, config);
-  add_hook_command(app, config);
-  add_batch_command(app, config);
-  add_studio_command(app, config);
-
+  Program program;
   try {
-    app.parse(argc, argv);
+    program.app.parse(argc, argv);
   } catch (const ProcessListRequest&) {
     std::cout << processes_in_words();
   } catch (const CLI::Success& request) {  // --help, --version
-    app.exit(request);
+    program.app.exit(request);
   } catch (const CLI::ParseError& error) {
-    refuse(app, error);
+    refuse(program.app, error);
   }
   require_stdout_written();
 }
