@@ -82,8 +82,10 @@ const cli::CalledCommand& command_of(const std::string& name) {
 py::array_t<double> rows_of(const std::vector<Vec3f>& positions) {
   py::array_t<double> rows({static_cast<py::ssize_t>(positions.size()), py::ssize_t{3}});
   double* to = rows.mutable_data();
-  for (const Vec3f& p : positions)
-    for (const float coordinate : {p.x, p.y, p.z}) *to++ = coordinate;
+  for (const Vec3f& position : positions) {
+    const Vec3d p = to_double(position);
+    for (const double coordinate : {p.x, p.y, p.z}) *to++ = coordinate;
+  }
   return rows;
 }
 

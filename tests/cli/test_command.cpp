@@ -321,7 +321,7 @@ TEST(Command, PackWritesATable) {
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "x,y,z,radius,kind");
   EXPECT_TRUE(contains(csv, ",lattice\n"));
   EXPECT_EQ(
-      run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", job.output("spheres.txt")}).exit_code, 2);
+      run({AERATE_EXECUTABLE, "pack", sample("bracket.stl"), "-o", job.output("spheres.dat")}).exit_code, 2);
 }
 
 TEST(Command, PackStopsAtTheDensityThatItReports) {
