@@ -254,7 +254,8 @@ void run_jobs(const std::vector<BatchRow*>& to_do, const RunCommand& run, const 
 }
 
 void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const ResultsFolder& results,
-              int threads, const std::function<void(const BatchRow&)>& ended, Monitor& monitor) {
+              int threads, bool retry_failed, const std::function<void(const BatchRow&)>& ended,
+              Monitor& monitor) {
   const PrivateFolder folder(monitor);
   std::vector<BatchRow*> in_order = rows;
   std::ranges::stable_partition(
@@ -262,7 +263,8 @@ void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const R
   for (BatchRow* const row : in_order) {
     monitor.check_interrupted();
     const PlannedJob& job = *row->job;
-    if (auto known = known_record(results.path(), job); known) {
+    if (auto known = known_record(results.path(), job);
+        known && (known->outcome == Outcome::done || !retry_failed)) {
       row->record = *std::move(known);
       continue;
     }

@@ -53,7 +53,9 @@ void run_jobs(const std::vector<BatchRow*>& to_do, const RunCommand& run, const 
 
 // The same for a task of a cluster: one after the other, and a job that cut this task off before as the last one. What another task has done is not done again.
 //   threads: of each
+//   retry_failed: but what has failed is
 void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const ResultsFolder& results,
-              int threads, const std::function<void(const BatchRow&)>& ended, Monitor& monitor);
+              int threads, bool retry_failed, const std::function<void(const BatchRow&)>& ended,
+              Monitor& monitor);
 
 }  // namespace aerate::batch

@@ -113,6 +113,7 @@ void keep_submission(const fs::path& results, const Submission& submission) {
                   {"version", submission.version},
                   {"working_folder", submission.working_folder.string()},
                   {"threads", submission.threads},
+                  {"retries_failed", submission.retries_failed},
                   {"plan", std::move(plan)},
                   {"arrays", std::move(arrays)}};
   const std::vector<std::uint8_t> bytes = Json::to_cbor(json);
@@ -130,7 +131,8 @@ Submission read_submission(const fs::path& file) {
     Submission submission{.name = json.at("name"),
                           .version = json.at("version"),
                           .working_folder = json.at("working_folder").get<std::string>(),
-                          .threads = json.at("threads")};
+                          .threads = json.at("threads"),
+                          .retries_failed = json.at("retries_failed")};
     for (const Json& job : json.at("plan")) submission.plan.push_back(job_of(job, results));
     for (const Json& array : json.at("arrays"))
       submission.arrays.push_back(array_of(array, submission.plan.size()));

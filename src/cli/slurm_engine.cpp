@@ -8,6 +8,7 @@
 #include <iostream>
 #include <optional>
 #include <random>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -72,6 +73,19 @@ std::string why_ended(const fs::path& log) {
   return why.empty() ? "its task was ended" : "its task was ended: " + why;
 }
 
+// Opens the folders in which other machines have written: a network file system may say for a minute that a file is not there, but looks again then.
+void look_anew(const Submission& submission, const fs::path& results) {
+  std::set<fs::path> folders{batch::state_folder(results)};
+  for (const batch::PlannedJob& job : submission.plan)
+    if (job.fault.empty()) folders.insert(job.paths.result.parent_path());
+  for (const fs::path& folder : folders) {
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+         entry.increment(ignored)) {
+    }
+  }
+}
+
 void sleep(std::chrono::milliseconds time, Monitor& monitor) {
   constexpr std::chrono::milliseconds kStep(50);
   const auto end = std::chrono::steady_clock::now() + time;
@@ -123,14 +137,13 @@ bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_
     return false;
   }
   std::vector<bool> cut_off;
-  for (const BatchRow* const row : to_do) {
-    cut_off.push_back(batch::is_marked_begun(results_, *row->job));
-    batch::forget(results_, *row->job);
-  }
+  cut_off.reserve(to_do.size());
+  for (const BatchRow* const row : to_do) cut_off.push_back(batch::is_marked_begun(results_, *row->job));
   Submission submission{.name = new_name(),
                         .version = kBatchVersion,
                         .working_folder = fs::current_path(),
                         .threads = options_.threads,
+                        .retries_failed = retry_failed,
                         .plan = plan,
                         .arrays = batch::task_arrays(to_do, cut_off,
                                                      {.models = options_.models_of_task,
@@ -168,6 +181,7 @@ Submission SlurmEngine::submission() const {
 }
 
 std::vector<BatchRow> SlurmEngine::rows_of(const Submission& submission, bool is_over) const {
+  if (is_over) look_anew(submission, results_);
   std::vector<BatchRow> rows = batch::known_rows(submission.plan, results_, false);
   for (const TaskArray& array : submission.arrays)
     for (std::size_t task = 0; task < array.tasks.size(); ++task)
@@ -311,7 +325,7 @@ void run_cluster_task(const fs::path& submission_file, std::size_t array, const 
     return commands.run(command, of_job);
   };
   batch::run_task(
-      in_task, run, folder, submission.threads,
+      in_task, run, folder, submission.threads, submission.retries_failed,
       [](const BatchRow& row) { std::cout << told(row) << "\n"
                                           << std::flush; }, monitor);
 }

@@ -27,7 +27,6 @@
 namespace aerate {
 namespace {
 
-using test::as_read_back;
 using test::contains;
 using test::message_of;
 
@@ -75,7 +74,7 @@ class CheckDrained : public testing::Test {
     return sound;
   }
 
-  OutputFacts check() { return check(as_read_back(solid_.mesh)); }
+  OutputFacts check() { return check(test::as_read_back(solid_.mesh)); }
   OutputFacts check(const Mesh& written) {
     Monitor silent;
     return check_written(written,
@@ -256,7 +255,7 @@ TEST_F(CheckDrained, WhatFailsIsNeverWritten) {
     Monitor silent;
     AnnouncedFile pending(folder.path() / name, silent);
     write_beside(
-        solid_, pending, {}, [&](const Mesh& written) { check(written); }, silent);
+        solid_, &pending, {}, [&](const Mesh& written) { check(written); }, silent);
     pending.file().commit();
   };
   write("sound.stl");

@@ -211,6 +211,15 @@ TEST_F(BatchOnSlurm, WhatTheClusterRefusesIsToldInItsWordsAndNothingIsInItsHands
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(contains(refused.err, "sbatch: ")) << refused.err;
   EXPECT_EQ(cluster_.run(batch_.command({batch_.models()})).exit_code, 0);
+  // What is there stays as it is.
+  const std::string before = batch_.result("a-hollow.stl");
+  EXPECT_EQ(submit({"--wall", "3", "--partition", "nowhere"}).exit_code, 1);
+  EXPECT_EQ(batch_.result("a-hollow.stl"), before);
+  // What could not be done is tried again if that is asked for.
+  batch_.file("models/b.stl", "no model");
+  EXPECT_EQ(submit({"--wait"}).exit_code, kSomeNotDone);
+  EXPECT_TRUE(contains(submit({"--wait"}).out, "0 in this run"));
+  EXPECT_TRUE(contains(submit({"--wait", "--retry-failed"}).out, "[1/1] refused"));
 }
 
 TEST_F(BatchOnSlurm, TasksThatWaitAreToldWithTheReason) {
