@@ -83,7 +83,7 @@ PackedModel packed(const std::filesystem::path& model, Monitor& monitor) {
   request.method = &packing_method("adaptive");
   request.process = limits_under(*find_process("sla"), {{Limit::min_radius, {5}}, {Limit::max_radius, {10}}},
                                  ProcessCheck::strict);
-  return pack_model(load_and_inspect(model, {}, monitor), request, monitor);
+  return pack_model(load_and_inspect({model}, {}, monitor), request, monitor);
 }
 
 void measure(const std::filesystem::path& model, Table& table) {

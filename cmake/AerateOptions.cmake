@@ -30,8 +30,11 @@ if(AERATE_SANITIZE)
   endif()
 endif()
 
-# aerate_add_library(NAME sources...): a static library of the project with its common options.
+# aerate_add_library(NAME sources...): a static library of the project with its common options. Position-independent, for the
+# Python module (src/python) is a shared object; functions are inlined as in a program all the same.
 function(aerate_add_library name)
   add_library(${name} STATIC ${ARGN})
   target_link_libraries(${name} PUBLIC aerate_options)
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${name} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-fno-semantic-interposition>)
 endfunction()

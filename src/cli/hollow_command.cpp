@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "cli/called_commands.h"
 #include "cli/cell_options.h"
+#include "cli/command_alone.h"
 #include "cli/commands.h"
 #include "cli/drainage_options.h"
 #include "cli/hollow_forms.h"
@@ -29,6 +31,7 @@
 #include "packing/methods.h"
 #include "pipeline/hollow.h"
 #include "pipeline/lightning_modifiers.h"
+#include "pipeline/solid_file.h"
 #include "printing/materials.h"
 #include "printing/slicers/slicers.h"
 
@@ -395,15 +398,20 @@ struct HollowCommand {
     return request.process.process.drainage == Drainage::needed && !limits.roof.shapes(limits.max_radius);
   }
 
-  void run() const {
-    const std::vector<JobForm> options = forms();
-    JobFiles files{packing.inputs(model.path), {output}};
+  JobFiles files() const {
+    JobFiles files{packing.inputs(model.path), {}};
+    if (!output.empty()) files.outputs.emplace_back(output);
     for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
     files.inputs.push_back({"list of spheres", spheres});
     files.inputs.push_back({"file of print settings", print.file()});
     if (!drainage.plugs().empty()) files.outputs.emplace_back(drainage.plugs());
     files.add_outputs(views.files());
-    run_reported(run_options, files, [&](Monitor& monitor) { return hollow(options, monitor); });
+    return files;
+  }
+
+  void run() const {
+    const std::vector<JobForm> options = forms();
+    run_reported(run_options, files(), [&](Monitor& monitor) { return hollow(options, monitor); });
   }
 
   ModelOptions model;
@@ -436,37 +444,38 @@ struct HollowCommand {
   std::string price_per = "kg";
 };
 
-// The command of a program that does nothing else.
-struct HollowAlone {
-  HollowAlone() : config(app), command(*app.add_subcommand("hollow", "")), hollow(command, config) {
-    app.require_subcommand(1);
-  }
-
-  CLI::App app{"", "aerate"};
-  ConfigFile config;
-  CLI::App& command;
-  HollowCommand hollow;
-};
+CalledResult call_hollow(const Call& call, Monitor& monitor) {
+  const CommandAlone<HollowCommand> alone("hollow", call);
+  const HollowCommand& command = alone.job();
+  std::vector<JobForm> forms = command.forms();
+  for (JobForm& form : forms) form.options.arrays = call.arrays;
+  CalledResult result;
+  const auto keep_mesh = [&](const HollowedForm& made, const HollowReport&, Monitor&) {
+    result.mesh = as_read_back(made.hollowed.carved.solid.mesh);
+  };
+  run_called(command.run_options, command.files(), call,
+             [&] { result.report = to_json(hollow(forms, monitor, keep_mesh)); });
+  return result;
+}
 
 }  // namespace
 
+CalledCommand called_hollow() {
+  return {"hollow", options_of_command<HollowCommand>, call_hollow};
+}
+
 void visit_hollow_options(const std::function<void(const CLI::Option&)>& visit) {
-  HollowAlone alone;
-  for (const CLI::Option* option : std::as_const(alone.command).get_options()) visit(*option);
+  const CommandAlone<HollowCommand> alone("hollow");
+  for (const CLI::Option* option : alone.command_options()) visit(*option);
 }
 
 std::vector<JobForm> forms_of_hollow(const std::filesystem::path& model, const std::filesystem::path& stem,
                                      std::vector<std::string> arguments) {
-  HollowAlone alone;
-  arguments.insert(arguments.begin(), {"hollow", model, "-o", stem});
-  std::ranges::reverse(arguments);  // as the parser takes them
-  try {
-    alone.app.parse(std::move(arguments));
-  } catch (const CLI::ParseError& error) {
-    refuse(alone.app, error);
-  }
-  alone.hollow.output = stem.string() + alone.hollow.ending();
-  return alone.hollow.forms();
+  CommandAlone<HollowCommand> alone("hollow");
+  arguments.insert(arguments.begin(), {"-o", stem});
+  alone.parse(model, std::move(arguments));
+  alone.job().output = stem.string() + alone.job().ending();
+  return alone.job().forms();
 }
 
 void add_hollow_command(CLI::App& app, const ConfigFile& config) {

@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "cli/called_commands.h"
+#include "cli/command_alone.h"
 #include "cli/commands.h"
 #include "cli/drainage_options.h"
 #include "cli/model_options.h"
@@ -46,7 +48,7 @@ struct InspectCommand {
     return std::nullopt;
   }
 
-  void run() const {
+  InspectOptions to_pipeline() const {
     InspectOptions options;
     options.drainage = inquiry();
     options.model = model.path;
@@ -54,10 +56,19 @@ struct InspectCommand {
     options.weld = model.weld;
     options.views = views.outputs();
     if (self_intersections) options.self_intersections = SelfIntersectionSearch::on;
-    JobFiles files{{{"model", options.model}, {"configuration file", config.path()}}, {}};
+    return options;
+  }
+
+  JobFiles files() const {
+    JobFiles files{{{"model", model.path}, {"configuration file", config.path()}}, {}};
     if (drainage) files.inputs.push_back({"process file", process_file_of(process)});
     files.add_outputs(views.files());
-    run_reported(run_options, files, [&](Monitor& monitor) { return inspect_model(options, monitor); });
+    return files;
+  }
+
+  void run() const {
+    const InspectOptions options = to_pipeline();
+    run_reported(run_options, files(), [&](Monitor& monitor) { return inspect_model(options, monitor); });
   }
 
   const ConfigFile& config;
@@ -73,7 +84,22 @@ struct InspectCommand {
   bool self_intersections = false;
 };
 
+CalledResult call_inspect(const Call& call, Monitor& monitor) {
+  const CommandAlone<InspectCommand> alone("inspect", call);
+  const InspectCommand& command = alone.job();
+  InspectOptions options = command.to_pipeline();
+  options.arrays = call.arrays;
+  CalledResult result;
+  run_called(command.run_options, command.files(), call,
+             [&] { result.report = to_json(inspect_model(options, monitor)); });
+  return result;
+}
+
 }  // namespace
+
+CalledCommand called_inspect() {
+  return {"inspect", options_of_command<InspectCommand>, call_inspect};
+}
 
 void add_inspect_command(CLI::App& app, const ConfigFile& config) {
   CLI::App& command = *app.add_subcommand("inspect", "Tell what is right and wrong with a model");

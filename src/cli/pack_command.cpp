@@ -5,7 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "cli/called_commands.h"
 #include "cli/cell_options.h"
+#include "cli/command_alone.h"
 #include "cli/commands.h"
 #include "cli/keep_solid_options.h"
 #include "cli/model_options.h"
@@ -38,9 +40,8 @@ void require_table(const std::filesystem::path& output) {
   if (mesh == nullptr || find_sphere_format(output)) return;
   throw UsageError(
       fmt::format("{}: spheres cannot be written as {}", output.string(), mesh->ending),
-      fmt::format("give --shape cells for cells as {}, or a name that ends in .csv, .json or .ply for "
-                  "a table of spheres",
-                  mesh->ending));
+      fmt::format("give --shape cells for cells as {}, or a name that ends in {} for a table of spheres",
+                  mesh->ending, endings_of_sphere_tables()));
 }
 
 struct PackCommand {
@@ -53,9 +54,9 @@ struct PackCommand {
         run_options(command) {
     command
         .add_option("-o,--output", output,
-                    "Spheres: a table, .csv (a line x,y,z,radius,kind each), .json or .ply. Cells: their "
-                    "planes, .csv or .json, or their pieces as closed shells, " +
-                        endings_that_are_written())
+                    fmt::format("Spheres: a table, {}; in a .csv a line x,y,z,radius,kind each. Cells: their "
+                                "planes, .csv or .json, or their pieces as closed shells, {}",
+                                endings_of_sphere_tables(), endings_that_are_written()))
         ->required()
         ->type_name("FILE");
   }
@@ -73,7 +74,7 @@ struct PackCommand {
     options.cells = shaped.cells;
     options.views = views.outputs();
     options.tolerance = shaped.tolerance.value_or(options.tolerance);
-    if (!options.cells) require_table(options.output);
+    if (!options.cells && !output.empty()) require_table(options.output);
     if (!options.cells)
       cells.require_neither_fillet_nor_tolerance("without --shape cells", "spheres are written as they are");
     else if (find_cell_table_format(options.output))
@@ -87,12 +88,17 @@ struct PackCommand {
     return options;
   }
 
-  void run() const {
-    const PackOptions options = to_pipeline();
-    JobFiles files{packing.inputs(model.path), {options.output}};
+  JobFiles files() const {
+    JobFiles files{packing.inputs(model.path), {}};
+    if (!output.empty()) files.outputs.emplace_back(output);
     for (NamedInput& region : keep_solid.inputs()) files.inputs.push_back(std::move(region));
     files.add_outputs(views.files());
-    run_reported(run_options, files, [&](Monitor& monitor) { return pack(options, monitor); });
+    return files;
+  }
+
+  void run() const {
+    const PackOptions options = to_pipeline();
+    run_reported(run_options, files(), [&](Monitor& monitor) { return pack(options, monitor); });
   }
 
   ModelOptions model;
@@ -104,7 +110,26 @@ struct PackCommand {
   std::string output;
 };
 
+CalledResult call_pack(const Call& call, Monitor& monitor) {
+  const CommandAlone<PackCommand> alone("pack", call);
+  const PackCommand& command = alone.job();
+  PackOptions options = command.to_pipeline();
+  options.arrays = call.arrays;
+  CalledResult result;
+  run_called(command.run_options, command.files(), call, [&] {
+    PackedPieces packed = pack_pieces(options, monitor);
+    result.report = to_json(packed.report);
+    result.spheres = std::move(packed.report.packing.spheres);
+    result.mesh = std::move(packed.pieces);
+  });
+  return result;
+}
+
 }  // namespace
+
+CalledCommand called_pack() {
+  return {"pack", options_of_command<PackCommand>, call_pack};
+}
 
 void add_pack_command(CLI::App& app, const ConfigFile& config) {
   CLI::App& command =

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 
 #include "cli/json_parts.h"
@@ -414,6 +415,15 @@ Json stand_of(const HollowReport& report) {
           {"voids_left_out", stand.all_voids - std::min(stand.all_voids, made)}};
 }
 
+// Null where nothing was written.
+Json path_of(const std::filesystem::path& output) {
+  return output.empty() ? Json(nullptr) : Json(output.string());
+}
+
+Json bytes_of(const std::filesystem::path& output, std::size_t bytes) {
+  return output.empty() ? Json(nullptr) : Json(bytes);
+}
+
 }  // namespace
 
 std::string to_json(const HollowReport& report) {
@@ -429,8 +439,8 @@ std::string to_json(const HollowReport& report) {
   json["surface"] = {{"mode", report.surface == OuterSurface::kept ? "kept" : "remeshed"},
                      {"voxel_mm", or_null(report.voxel_size)},
                      {"outer_deviation_mm", or_null(report.outer_deviation)}};
-  json["output"] = {{"path", report.output_path.string()},
-                    {"bytes", report.output_bytes},
+  json["output"] = {{"path", path_of(report.output_path)},
+                    {"bytes", bytes_of(report.output_path, report.output_bytes)},
                     {"triangles", output.triangle_count + blocker_triangles(report)},
                     {"outer_triangles", output.outer_triangle_count},
                     {"void_triangles", output.void_triangle_count}};
@@ -476,7 +486,8 @@ std::string to_json(const PackReport& report) {
   json["measured"] = report.clearances ? json_of(*report.clearances) : Json(nullptr);
   json["keep_solid"] = json_of(report.kept);
   json["cells"] = report.cells ? json_of(*report.cells, report) : Json(nullptr);
-  json["output"] = {{"path", report.output.string()}, {"bytes", report.output_bytes}};
+  json["output"] = {{"path", path_of(report.output)},
+                    {"bytes", bytes_of(report.output, report.output_bytes)}};
   add_closing(json, report.stages, report.notices);
   return dump(json);
 }

@@ -95,4 +95,14 @@ void run_rendered(const RunOptions& options, const JobFiles& files,
   }
 }
 
+void run_called(const RunOptions& options, JobFiles files, const Call& call,
+                const std::function<void()>& job) {
+  if (!options.json.empty())
+    throw UsageError("--json: the report is what this function returns", "leave it out");
+  if (call.arrays != nullptr)
+    std::erase_if(files.inputs, [&](const NamedInput& input) { return input.what == "model"; });
+  require_other_files("", files);
+  run_with_threads(options.threads, job);
+}
+
 }  // namespace aerate::cli

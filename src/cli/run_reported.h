@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/called_commands.h"
 #include "cli/model_options.h"
 #include "cli/reports.h"
 #include "core/monitor.h"
@@ -31,6 +32,11 @@ struct JobFiles {
 // As `run_reported`, for a job whose report is rendered.
 void run_rendered(const RunOptions& options, const JobFiles& files,
                   const std::function<RenderedReport(Monitor&)>& job, Verbosity notices);
+
+// As `run_reported`, for a caller who makes what he likes of what the job returns. Throws UsageError for a report that was to be
+// written, too.
+void run_called(const RunOptions& options, JobFiles files, const Call& call,
+                const std::function<void()>& job);
 
 // Runs a job under the options that all commands share, and writes its report: as text to standard output, or
 // as JSON there, or as JSON to a file beside the text. That file is opened first, so that a place which cannot

@@ -6,6 +6,8 @@
 #include "core/error.h"
 #include "files/formats.h"
 #include "files/input_file.h"
+#include "files/mesh_arrays.h"
+#include "files/part_writer.h"
 
 namespace aerate {
 
@@ -23,10 +25,18 @@ double millimetres_per(LengthUnit unit) {
   return 1;
 }
 
-LoadedModel load_model(InputFile file, const MeshFormat& format, const LoadOptions& options) {
+namespace {
+
+void require_scale(const LoadOptions& options) {
   for (const double scale : {options.scale.x, options.scale.y, options.scale.z})
     if (!std::isfinite(scale) || !(scale > 0))
       throw UsageError(fmt::format("the scale must be a positive number, not {:g}", scale));
+}
+
+}  // namespace
+
+LoadedModel load_model(InputFile file, const MeshFormat& format, const LoadOptions& options) {
+  require_scale(options);
   LoadedModel model = format.read(file, options);
   if (model.mesh.triangles.empty()) fail_to_read(file, "no triangles");
   model.format = format.name;
@@ -37,6 +47,11 @@ LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& opt
   check_readable(path);
   const MeshFormat& format = format_to_read(path);
   return load_model(read_file(path), format, options);
+}
+
+LoadedModel load_model(const MeshArrays& arrays, const std::string& name, const LoadOptions& options) {
+  require_scale(options);
+  return {.mesh = mesh_of_arrays(arrays, name, millimetres_per_unit(options)), .format = "arrays"};
 }
 
 }  // namespace aerate

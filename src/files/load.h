@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,5 +78,16 @@ LoadedModel load_model(const std::filesystem::path& path, const LoadOptions& opt
 
 // As above, of a file that is in memory already.
 LoadedModel load_model(InputFile file, const MeshFormat& format, const LoadOptions& options = {});
+
+// A model that its caller has in memory and keeps, by rows.
+struct MeshArrays {
+  std::span<const double> vertices;         // n x 3, in the unit that LoadOptions say
+  std::span<const std::int64_t> triangles;  // m x 3, rows of `vertices`
+};
+
+// As above, of arrays as of a file without a unit: coordinates are rounded once, vertices welded and numbered in order of
+// first use. `name` stands for the file in messages. Throws InputError for coordinates that are not finite, rows that are not
+// there, and no triangles.
+LoadedModel load_model(const MeshArrays& arrays, const std::string& name, const LoadOptions& options = {});
 
 }  // namespace aerate

@@ -9,6 +9,8 @@
 #include <optional>
 #include <string_view>
 
+#include "core/listed.h"
+#include "files/grain_tables.h"
 #include "files/text_scan.h"
 
 namespace aerate {
@@ -156,7 +158,7 @@ std::vector<Sphere> read_ply(const InputFile& file) {
   return spheres;
 }
 
-std::string write_csv(const std::vector<Sphere>& spheres) {
+std::string write_csv(const std::vector<Sphere>& spheres, const Box3f& /*model*/) {
   std::string table = fmt::format("{}\n", kCsvHeader);
   for (const auto& [centre, radius, kind] : spheres) {
     fmt::format_to(std::back_inserter(table), "{},{},{},{},{}\n", centre.x, centre.y, centre.z, radius,
@@ -165,7 +167,7 @@ std::string write_csv(const std::vector<Sphere>& spheres) {
   return table;
 }
 
-std::string write_json(const std::vector<Sphere>& spheres) {
+std::string write_json(const std::vector<Sphere>& spheres, const Box3f& /*model*/) {
   std::string table =
       fmt::format("{{\"schema\": \"{}\", \"schema_version\": 1, \"unit\": \"mm\", \"spheres\": [", kSchema);
   const char* separator = "";
@@ -176,7 +178,7 @@ std::string write_json(const std::vector<Sphere>& spheres) {
   return table + "\n]}\n";
 }
 
-std::string write_ply(const std::vector<Sphere>& spheres) {
+std::string write_ply(const std::vector<Sphere>& spheres, const Box3f& /*model*/) {
   std::string table = fmt::format(
       "ply\nformat ascii 1.0\ncomment spheres, mm\nelement vertex {}\nproperty double x\nproperty double "
       "y\nproperty double z\nproperty double radius\nproperty uchar kind\nend_header\n",
@@ -190,9 +192,35 @@ std::string write_ply(const std::vector<Sphere>& spheres) {
 
 }  // namespace
 
-constinit const SphereFormat SphereFormat::csv{".csv", write_csv, read_csv};
-constinit const SphereFormat SphereFormat::json{".json", write_json, read_json};
-constinit const SphereFormat SphereFormat::ply{".ply", write_ply, read_ply};
+constinit const SphereFormat SphereFormat::csv{".csv", "", write_csv, read_csv};
+constinit const SphereFormat SphereFormat::json{".json", "", write_json, read_json};
+constinit const SphereFormat SphereFormat::ply{".ply", "", write_ply, read_ply};
+constinit const SphereFormat SphereFormat::vtk{".vtp", "ParaView", vtk_spheres, nullptr};
+constinit const SphereFormat SphereFormat::lammps{".data", "LAMMPS", lammps_spheres, nullptr};
+constinit const SphereFormat SphereFormat::yade{".txt", "YADE", yade_spheres, nullptr};
+
+namespace {
+
+constexpr std::array kFormats{&SphereFormat::csv, &SphereFormat::json,   &SphereFormat::ply,
+                              &SphereFormat::vtk, &SphereFormat::lammps, &SphereFormat::yade};
+
+// For sentences: ".csv, .json or .ply"
+std::string endings_of(bool (*is_meant)(const SphereFormat& format)) {
+  std::vector<std::string> endings;
+  for (const SphereFormat* format : kFormats) {
+    if (!is_meant(*format)) continue;
+    const std::string_view program = format->program;
+    endings.push_back(program.empty() ? format->ending : fmt::format("{} ({})", format->ending, program));
+  }
+  return listed(endings, "or");
+}
+
+std::string ending_in_words(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  return ending.empty() ? "a file without an ending" : ending;
+}
+
+}  // namespace
 
 const char* name_of(SphereKind kind) {
   return kKindNames[static_cast<std::size_t>(kind)];
@@ -200,29 +228,34 @@ const char* name_of(SphereKind kind) {
 
 std::optional<SphereFormat> find_sphere_format(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  for (const SphereFormat& format : {SphereFormat::csv, SphereFormat::json, SphereFormat::ply}) {
-    if (ending == format.ending) return format;
-  }
+  for (const SphereFormat* format : kFormats)
+    if (ending == format->ending) return *format;
   return std::nullopt;
 }
 
-SphereFormat sphere_format_of(const std::filesystem::path& path) {
-  if (const auto format = find_sphere_format(path)) return *format;
-  const std::string ending = ending_of(path);
-  throw UsageError(fmt::format("{}: spheres cannot be written or read as {}", path.string(),
-                               ending.empty() ? "a file without an ending" : ending),
-                   "use a name that ends in .csv, .json or .ply");
+std::string endings_of_sphere_tables() {
+  return endings_of([](const SphereFormat&) { return true; });
 }
 
-std::string sphere_table(const Packing& packing, const SphereFormat& format) {
-  return format.write(packing.spheres);
+SphereFormat sphere_format_to_write(const std::filesystem::path& path) {
+  if (const auto format = find_sphere_format(path)) return *format;
+  throw UsageError(fmt::format("{}: spheres cannot be written as {}", path.string(), ending_in_words(path)),
+                   fmt::format("use a name that ends in {}", endings_of_sphere_tables()));
+}
+
+std::string sphere_table(const Packing& packing, const SphereFormat& format, const Box3f& model) {
+  return format.write(packing.spheres, model);
 }
 
 std::vector<Sphere> read_sphere_table(const std::filesystem::path& path) {
-  const SphereFormat format = sphere_format_of(path);
+  const auto format = find_sphere_format(path);
+  if (!format || format->read == nullptr)
+    throw UsageError(fmt::format("{}: spheres cannot be read from {}", path.string(), ending_in_words(path)),
+                     fmt::format("use a name that ends in {}",
+                                 endings_of([](const SphereFormat& each) { return each.read != nullptr; })));
   InputFile file = read_file(path);
   file.name = path.filename().string();
-  std::vector<Sphere> spheres = format.read(file);
+  std::vector<Sphere> spheres = format->read(file);
   if (spheres.empty()) fail_to_read(file, "there are no spheres in it");
   return spheres;
 }

@@ -44,7 +44,8 @@ void require_standing(const Balance& balance, const StandFacts& stand) {
                balance.margin_after.value_or(0), stand.needed);
 }
 
-WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, const HollowOptions& options,
+// Without a file, nothing is written but all is checked.
+WrittenFile write_to(AnnouncedFile* pending, const HollowedModel& hollowed, const HollowOptions& options,
                      Monitor& monitor) {
   WrittenFile written;
   const auto check = [&](const Mesh& read_back) {
@@ -61,7 +62,7 @@ WrittenFile write_to(AnnouncedFile& pending, const HollowedModel& hollowed, cons
                                    .kept = hollowed.model->kept ? &*hollowed.model->kept : nullptr},
                                   monitor);
     if (hollowed.model->opened) require_no_sealed_cavity(read_back);
-    written.bytes = std::filesystem::file_size(pending.file().path());
+    if (pending != nullptr) written.bytes = std::filesystem::file_size(pending->file().path());
     if (options.modifiers) return;
     written.balance = balance_of(hollowed.model->mesh, written.facts, hollowed.packing.limits.roof.up);
     if (hollowed.stand) require_standing(written.balance, *hollowed.stand);
@@ -175,7 +176,7 @@ void warn_of_unplugged(const OpenedCavities& opened, Monitor& monitor) {
 
 HollowReport write_hollowed(const HollowedModel& hollowed, const HollowOptions& options, Monitor& monitor) {
   AnnouncedFile pending(options.output, monitor);
-  const WrittenFile written = write_to(pending, hollowed, options, monitor);
+  const WrittenFile written = write_to(&pending, hollowed, options, monitor);
   pending.file().commit();
   return report_of(hollowed, written, options);
 }
@@ -191,12 +192,13 @@ HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor, const Also
   JobLog log(monitor);
   for (const std::string& remark : options.print_remarks) log.notice(remark);
   // Made before the long stages, so that a place that cannot be written to is found at once.
-  AnnouncedFile pending(options.output, log);
+  std::optional<AnnouncedFile> pending;
+  if (!options.output.empty()) pending.emplace(options.output, log);
   ViewFiles views(options.views, log);
   std::optional<AnnouncedFile> pending_plugs;
   if (options.plugs) pending_plugs.emplace(options.plugs->output, log);
   const HollowedForm best = carve_or_open(forms, log);
-  const WrittenFile written = write_to(pending, best.hollowed, *best.options, log);
+  const WrittenFile written = write_to(pending ? &*pending : nullptr, best.hollowed, *best.options, log);
   HollowReport report = report_of(best.hollowed, written, *best.options, best.print);
   if (!best.options->modifiers)
     warn_of_cavities(best.hollowed.model->inspection, best.hollowed.request.process.process, log);
@@ -208,7 +210,7 @@ HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor, const Also
     report.plugs = write_plugs(*pending_plugs, best.hollowed, *options.plugs, log);
     results.push_back(&pending_plugs->file());
   }
-  results.push_back(&pending.file());
+  if (pending) results.push_back(&pending->file());
   views.write([&] { return scene_of(best.hollowed, report); }, log);
   also(best, report, log);
   views.commit_with(std::move(results));

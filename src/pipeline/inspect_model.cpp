@@ -15,7 +15,7 @@ namespace {
 InspectedModel look_at(const InspectOptions& options, bool is_shown, JobLog& log) {
   InspectedModel inspected;
   InspectReport& report = inspected.report;
-  PreparedModel model = load_and_inspect(options.model, options.load, log);
+  PreparedModel model = load_and_inspect({options.model, options.arrays}, options.load, log);
   report.input = model.input;
   if (options.self_intersections == SelfIntersectionSearch::on) {
     log.stage("self-intersections");

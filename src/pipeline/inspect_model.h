@@ -15,6 +15,7 @@ enum class SelfIntersectionSearch { off, on };
 
 struct InspectOptions {
   std::filesystem::path model;
+  const MeshArrays* arrays = nullptr;  // see HollowOptions
   LoadOptions load;
   std::optional<double> weld;  // see HollowOptions
   SelfIntersectionSearch self_intersections = SelfIntersectionSearch::off;

@@ -65,7 +65,7 @@ Mesh named_mesh(const NamedRegion& name, const RegionRequest& request, const Pre
                      "give a mesh file, a modifier's name as the slicer shows it, or box:, sphere: or "
                      "cylinder: with numbers");
   }
-  return whole(load_and_inspect(name, policy.load, within), request, policy, within);
+  return whole(load_and_inspect({name}, policy.load, within), request, policy, within);
 }
 
 struct MeshOfRegion {

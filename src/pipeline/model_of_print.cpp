@@ -65,7 +65,7 @@ std::vector<fs::path> named_as_output(const std::vector<fs::path>& models, const
 
 bool may_have_size(const fs::path& path, Vec3d size, const LoadOptions& load, Monitor& monitor) {
   try {
-    const Box3f box = bounding_box(load_and_inspect(path, load, monitor).mesh);
+    const Box3f box = bounding_box(load_and_inspect({path}, load, monitor).mesh);
     const Vec3d own = to_double(box.upper) - to_double(box.lower);
     return std::abs(own.z - size.z) <= kLayer && own.x <= size.x + kLine && own.y <= size.y + kLine;
   } catch (const InputError&) {

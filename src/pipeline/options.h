@@ -71,7 +71,10 @@ inline constexpr double kCellTolerance = 0.1;
 
 struct PackOptions {
   std::filesystem::path model;
-  // A table of spheres or, of cells, a table of planes or a mesh of pieces: as its ending says.
+  // If given, the model's arrays, which the caller keeps; `model` is what it is called then.
+  const MeshArrays* arrays = nullptr;
+  // A table of spheres or, of cells, a table of planes or a mesh of pieces: as its ending says. Empty: nothing is written, and
+  // cells become pieces.
   std::filesystem::path output;
   LoadOptions load;
   std::optional<double> weld;  // see HollowOptions
@@ -124,6 +127,9 @@ struct PrintOrigin {
 
 struct HollowOptions {
   std::filesystem::path model;
+  // If given, the model's arrays, which the caller keeps; `model` is what it is called then.
+  const MeshArrays* arrays = nullptr;
+  // Empty: nothing is written, and the mesh is checked as if it had been read back.
   std::filesystem::path output;
   // If given, and the output is 3MF: what this slicer is to call the object, in UTF-8.
   std::optional<ObjectName> object_name;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/overhang.h"
@@ -19,6 +20,7 @@
 #include "pipeline/pack_cells.h"
 #include "pipeline/print_prediction.h"
 #include "pipeline/scene_of.h"
+#include "pipeline/solid_file.h"
 #include "pipeline/view_files.h"
 
 namespace aerate {
@@ -237,19 +239,31 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
   return {std::move(packing), std::move(surface)};
 }
 
-PackReport pack(const PackOptions& options, Monitor& monitor) {
+namespace {
+
+// The report, and the shapes of cells where pieces or pictures were made of them.
+struct PackedShapes {
+  PackReport report;
+  std::optional<CellVoids> shapes;
+};
+
+PackedShapes pack_shapes(const PackOptions& options, Monitor& monitor) {
   // Refuses what cannot be written.
+  const bool is_written = !options.output.empty();
   const auto cells = options.cells ? std::optional(cell_format_of(options.output)) : std::nullopt;
-  const auto spheres = cells ? std::nullopt : std::optional(sphere_format_of(options.output));
+  const auto spheres =
+      cells || !is_written ? std::nullopt : std::optional(sphere_format_to_write(options.output));
 
   JobLog log(monitor);
-  PackReport report;
+  PackedShapes packed;
+  PackReport& report = packed.report;
   report.method = name_of_method(options.packing);
   report.output = options.output;
   LoadOptions load = options.load;
   load.wanted_modifiers = names_of_regions(options.keep_solid);
-  PreparedModel model = load_and_inspect(options.model, load, log);
-  AnnouncedFile file(options.output, log);
+  PreparedModel model = load_and_inspect({options.model, options.arrays}, load, log);
+  std::optional<AnnouncedFile> file;
+  if (is_written) file.emplace(options.output, log);
   ViewFiles views(options.views, log);
   model = make_usable(std::move(model), {.mode = SurfaceMode::keep, .weld = options.weld}, log);
   model.kept =
@@ -268,26 +282,41 @@ PackReport pack(const PackOptions& options, Monitor& monitor) {
     report.kept = {
         model.kept->count, model.kept->volume,
         measure_clearances(model.kept->within, report.packing.spheres, report.packing.limits.roof).wall};
-  std::optional<CellVoids> shapes;
   if (cells) {
     Packing of_cells = report.packing;
     of_cells.limits = report.limits;
-    WrittenCells written = write_cells(model, surface, of_cells, options, *cells, file, log);
-    shapes = std::move(written.shapes);
+    WrittenCells written =
+        write_cells(model, surface, of_cells, options, *cells, file ? &*file : nullptr, log);
+    packed.shapes = std::move(written.shapes);
     report.cells = written.facts;
     report.output_bytes = report.cells->file_bytes;
     if (report.kept && report.cells->pieces) report.kept->wall = report.cells->pieces->kept_wall;
-  } else {
+  } else if (spheres) {
     log.stage("write");
-    const std::string table = sphere_table(report.packing, *spheres);
+    const std::string table = sphere_table(report.packing, *spheres, model.inspection.box);
     report.output_bytes = table.size();
-    write_bytes(table, file.file());
+    write_bytes(table, file->file());
   }
+  const auto& shapes = packed.shapes;
   views.write([&] { return scene_of(model, surface, report, shapes ? &*shapes : nullptr, log); }, log);
-  views.commit_with({&file.file()});
+  views.commit_with(file ? std::vector{&file->file()} : std::vector<PendingFile*>{});
   report.stages = log.finish();
   report.notices = log.notices();
-  return report;
+  return packed;
+}
+
+}  // namespace
+
+PackReport pack(const PackOptions& options, Monitor& monitor) {
+  return pack_shapes(options, monitor).report;
+}
+
+PackedPieces pack_pieces(const PackOptions& options, Monitor& monitor) {
+  PackedShapes packed = pack_shapes(options, monitor);
+  PackedPieces result{std::move(packed.report), {}};
+  if (result.report.cells && result.report.cells->pieces)
+    result.pieces = as_read_back(pieces_of(*packed.shapes));
+  return result;
 }
 
 }  // namespace aerate

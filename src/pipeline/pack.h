@@ -26,4 +26,11 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
 // mesh of pieces is read back and checked before it appears. Throws what `hollow` throws.
 PackReport pack(const PackOptions& options, Monitor& monitor);
 
+// The same for who has a use for the pieces of cells, too.
+struct PackedPieces {
+  PackReport report;
+  Mesh pieces;  // as it comes out of any file; empty where none were made
+};
+PackedPieces pack_pieces(const PackOptions& options, Monitor& monitor);
+
 }  // namespace aerate

@@ -15,11 +15,11 @@ namespace {
 // Adds what was found on the file.
 void write_pieces(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
                   const CellVoids& cells, const PackOptions& options, const MeshFormat& format,
-                  AnnouncedFile& file, PackedCells& written, Monitor& monitor) {
+                  AnnouncedFile* file, PackedCells& written, Monitor& monitor) {
   const Solid voids = carve_cells({}, cells);
   const Solid pieces{with_void_shells_turned(voids.mesh, voids), {}};
   const auto check = [&](const Mesh& read_back) {
-    written.file_bytes = std::filesystem::file_size(file.file().path());
+    if (file != nullptr) written.file_bytes = std::filesystem::file_size(file->file().path());
     written.pieces = check_pieces(with_void_shells_turned(read_back, voids),
                                   {.solid = voids,
                                    .model = model.mesh,
@@ -38,7 +38,13 @@ void write_pieces(const PreparedModel& model, const SurfaceIndex& surface, const
 
 }  // namespace
 
+Mesh pieces_of(const CellVoids& shapes) {
+  const Solid voids = carve_cells({}, shapes);
+  return with_void_shells_turned(voids.mesh, voids);
+}
+
 CellFormat cell_format_of(const std::filesystem::path& path) {
+  if (path.empty()) return &MeshFormat::stl;
   if (const auto table = find_cell_table_format(path)) return *table;
   if (const MeshFormat* const mesh = find_format_to_write(path)) return mesh;
   const std::string ending = path.extension().string();
@@ -50,7 +56,7 @@ CellFormat cell_format_of(const std::filesystem::path& path) {
 }
 
 WrittenCells write_cells(const PreparedModel& model, const SurfaceIndex& surface, const Packing& packing,
-                         const PackOptions& options, const CellFormat& format, AnnouncedFile& file,
+                         const PackOptions& options, const CellFormat& format, AnnouncedFile* file,
                          Monitor& monitor) {
   monitor.stage("shape");
   const CellPlanes planes = planes_of_cells(model, packing, options.packing.device, monitor);
@@ -67,7 +73,7 @@ WrittenCells write_cells(const PreparedModel& model, const SurfaceIndex& surface
     monitor.stage("write");
     const std::string text = cell_table(packing, planes, *table);
     written.file_bytes = text.size();
-    write_bytes(text, file.file());
+    write_bytes(text, file->file());
     return result;
   }
   write_pieces(model, surface, packing, *result.shapes, options, *std::get<const MeshFormat*>(format), file,

@@ -196,11 +196,12 @@ class NoticeList : public Monitor {
 
 }  // namespace
 
-PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOptions& options,
-                               Monitor& monitor) {
+PreparedModel load_and_inspect(const ModelSource& source, const LoadOptions& options, Monitor& monitor) {
+  const std::filesystem::path& path = source.path;
   PreparedModel model;
   monitor.stage("load");
-  LoadedModel loaded = load_model(path, options);
+  LoadedModel loaded = source.arrays != nullptr ? load_model(*source.arrays, path.string(), options)
+                                                : load_model(path, options);
   for (const std::string& notice : loaded.notices) {
     monitor.notice(fmt::format("{}: {}", path.filename().string(), notice));
   }
@@ -251,7 +252,7 @@ ModelUse use_of(PreparedModel model, const SurfacePolicy& policy) {
 PreparedModel prepare_model(const HollowOptions& options, Monitor& monitor) {
   LoadOptions load = options.load;
   load.wanted_modifiers = names_of_regions(options.keep_solid);
-  PreparedModel model = load_and_inspect(options.model, load, monitor);
+  PreparedModel model = load_and_inspect({options.model, options.arrays}, load, monitor);
   const double voxel_size = default_voxel_size(options.packing.limits(), model.inspection.box);
   model = make_usable(std::move(model),
                       {options.surface, options.weld, options.max_hole, {options.voxel_size, voxel_size}},

@@ -47,9 +47,14 @@ struct SurfacePolicy {
   VoxelRequest voxels = {};             // for remeshing
 };
 
+// A model's file, or arrays that are called by this name.
+struct ModelSource {
+  std::filesystem::path path;
+  const MeshArrays* arrays = nullptr;
+};
+
 // Reads and inspects a model; notes several parts. Throws what load_model throws.
-PreparedModel load_and_inspect(const std::filesystem::path& path, const LoadOptions& options,
-                               Monitor& monitor);
+PreparedModel load_and_inspect(const ModelSource& source, const LoadOptions& options, Monitor& monitor);
 
 // Closes cracks of no width, takes doubled bodies once, turns what is inside out, and remeshes if the policy
 // says so. Throws MeshError, naming what is wrong and where, for a model that bounds no solid, that the policy

@@ -262,8 +262,9 @@ void add_details(Scene& scene, const HollowReport& report) {
                     100 * output.volume_after / output.volume_before, 100 * report.balance.stiffness));
   if (report.balance.tips_over()) add("balance", "it stood by itself, and its voids tip it over");
   if (report.output.drainage) add("sealed", counted(output.drainage->sealed_cavities, "cavity", "cavities"));
-  add("file", fmt::format("{}, {} triangles, {:.3g} MB", printable(report.output_path.filename().string()),
-                          grouped(output.triangle_count), static_cast<double>(report.output_bytes) / 1e6));
+  if (!report.output_path.empty())
+    add("file", fmt::format("{}, {} triangles, {:.3g} MB", printable(report.output_path.filename().string()),
+                            grouped(output.triangle_count), static_cast<double>(report.output_bytes) / 1e6));
   add("tolerance", fmt::format("{:.3g} mm", report.tolerance_used));
 }
 

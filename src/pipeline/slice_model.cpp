@@ -165,7 +165,7 @@ Scene scene_of_best(SliceReport& report, const HollowOptions& model, JobLog& log
   if (best.scene) {
     scene = std::move(*best.scene);
   } else {
-    const PreparedModel read = load_and_inspect(model.model, model.load, log);
+    const PreparedModel read = load_and_inspect({model.model}, model.load, log);
     scene = scene_of(read.mesh, read.input);
   }
   if (report.print) scene.layer_height = report.print->settings.layer_height;

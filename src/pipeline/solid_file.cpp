@@ -8,6 +8,7 @@
 #include "check/same_triangles.h"
 #include "core/error.h"
 #include "files/text_scan.h"
+#include "files/weld.h"
 #include "printing/slicers/slicers.h"
 #include "printing/slicers/support_blockers.h"
 
@@ -48,6 +49,12 @@ Mesh without_blockers(Mesh mesh, const Solid& solid, const BlockerFormat& format
 }  // namespace
 
 SolidFormat solid_format_of(const HollowOptions& options) {
+  const bool needs_file = options.modifiers || options.support_blockers != nullptr;
+  if (options.output.empty() && needs_file)
+    throw UsageError(fmt::format("{} are parts of a file, and none is to be written",
+                                 options.modifiers ? "modifiers" : "support blockers"),
+                     "name the output");
+  if (options.output.empty()) return {};
   if (options.modifiers) {
     require_ending(options.output, *options.modifiers->slicer->modifiers, "modifiers", "--as modifiers");
     return {&MeshFormat::three_mf, options.modifiers, std::nullopt, options.object_name};
@@ -112,13 +119,23 @@ Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, cons
   return with_void_shells_turned(std::move(mesh), solid);
 }
 
-void write_beside(const Solid& solid, AnnouncedFile& pending, const SolidFormat& format,
+Mesh as_read_back(const Mesh& mesh) {
+  Welder welder(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles)
+    welder.add_triangle(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+  return std::move(welder).finish();
+}
+
+void write_beside(const Solid& solid, AnnouncedFile* pending, const SolidFormat& format,
                   const std::function<void(const Mesh& written)>& check, Monitor& monitor) {
-  monitor.stage("write");
-  write_solid(solid, pending.file(), format);
-  monitor.check_interrupted();
+  if (pending != nullptr) {
+    monitor.stage("write");
+    write_solid(solid, pending->file(), format);
+    monitor.check_interrupted();
+  }
   monitor.stage("check");
-  check(read_back_solid(solid, pending.file().path(), format, monitor));
+  check(pending != nullptr ? read_back_solid(solid, pending->file().path(), format, monitor)
+                           : as_read_back(solid.mesh));
   monitor.check_interrupted();
 }
 

@@ -277,12 +277,13 @@ TEST(PackCells, HintsNameNoOptionsOfOtherCommandsAsTheirOwn) {
 TEST(PackCells, WhatCannotBeWrittenIsRefused) {
   const Job job;
   const auto model = job.input("block.stl", block());
-  for (const char* name : {"out.txt", "out", "out.off"})
+  for (const char* name : {"out.txt", "out.vtp", "out.data", "out", "out.off"})
     expect_refused(job, pack_cells(model, job.output(name)), kUsage, "cells cannot be written as");
+  expect_refused(job, pack_cells(model, job.output("out.vtp")), kUsage,
+                 "or in .csv or .json for their planes");
   expect_refused(job, pack(model, job.output("out.stl"), {}), kUsage, "spheres cannot be written as .stl");
   expect_refused(job, pack(model, job.output("out.stl"), {}), kUsage, "hint: give --shape cells");
-  expect_refused(job, pack(model, job.output("out.off"), {}), kUsage,
-                 "spheres cannot be written or read as .off");
+  expect_refused(job, pack(model, job.output("out.off"), {}), kUsage, "spheres cannot be written as .off");
   expect_refused(job, pack_cells(model, model), kUsage, "the output is the model itself");
 }
 

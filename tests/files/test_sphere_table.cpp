@@ -29,7 +29,7 @@ class SphereTable : public ::testing::Test {
 TEST_F(SphereTable, ReadsBackToTheSameBitsInEveryFormat) {
   const Packing packing = some_packing();
   for (const char* name : {"s.csv", "s.json", "s.PLY"}) {
-    const auto file = folder_.write(name, sphere_table(packing, sphere_format_of(name)));
+    const auto file = folder_.write(name, sphere_table(packing, sphere_format_to_write(name), {}));
     const std::vector<Sphere> read = read_sphere_table(file);
     ASSERT_EQ(read.size(), packing.spheres.size()) << name;
     for (std::size_t i = 0; i < read.size(); ++i) {
@@ -38,6 +38,42 @@ TEST_F(SphereTable, ReadsBackToTheSameBitsInEveryFormat) {
       EXPECT_EQ(read[i].kind, packing.spheres[i].kind) << name;
     }
   }
+}
+
+// Programs that simulate grains read these (tests/python); here is what they hold, to the letter.
+TEST_F(SphereTable, ForParaViewIsPolyDataInFullPrecision) {
+  const std::string text = sphere_table(some_packing(), SphereFormat::vtk, {});
+  EXPECT_TRUE(test::contains(text, R"(<Piece NumberOfPoints="3" NumberOfVerts="3")"));
+  EXPECT_TRUE(test::contains(text, "\n0.3333333333333333 -2e-17 100000\n5 6 7\n-5 0.1 7\n</DataArray>"));
+  EXPECT_TRUE(test::contains(text, "Name=\"radius\" format=\"ascii\">\n0.1\n1.2345678901234567\n2\n<"));
+  EXPECT_TRUE(test::contains(text, "Name=\"kind\" format=\"ascii\">\n0\n3\n4\n<"));
+  EXPECT_TRUE(test::contains(text, "Name=\"connectivity\" format=\"ascii\">\n0\n1\n2\n<"));
+  EXPECT_TRUE(test::contains(text, "Name=\"offsets\" format=\"ascii\">\n1\n2\n3\n<"));
+  EXPECT_TRUE(test::contains(text, "Name=\"unit\" NumberOfTuples=\"1\" format=\"ascii\">\n109 109 0\n<"));
+}
+
+TEST_F(SphereTable, ForLammpsAreDiametersInTheModelsBox) {
+  EXPECT_EQ(sphere_table(some_packing(), SphereFormat::lammps, {{-8, -1, 0}, {6, 7.5f, 2e5f}}),
+            "spheres packed by aerate: lengths in mm, density 1 (give yours: set type 1 density D)\n\n"
+            "3 atoms\n1 atom types\n\n-8 6 xlo xhi\n-1 7.5 ylo yhi\n0 200000 zlo zhi\n\nAtoms # sphere\n\n"
+            "1 1 0.2 1 0.3333333333333333 -2e-17 100000\n2 1 2.4691357802469134 1 5 6 7\n3 1 4 1 -5 0.1 7\n");
+}
+
+TEST_F(SphereTable, ForYadeAreLinesOfFourNumbers) {
+  EXPECT_EQ(sphere_table(some_packing(), SphereFormat::yade, {}),
+            "#format x_y_z_r\n# lengths in mm\n0.3333333333333333 -2e-17 100000 0.1\n"
+            "5 6 7 1.2345678901234567\n-5 0.1 7 2\n");
+}
+
+TEST_F(SphereTable, WhatIsForOtherProgramsIsOnlyWritten) {
+  for (const char* name : {"s.vtp", "s.data", "s.txt"}) {
+    const auto file = folder_.write(name, sphere_table(some_packing(), sphere_format_to_write(name), {}));
+    const std::string message = test::message_of<UsageError>([&] { read_sphere_table(file); });
+    EXPECT_TRUE(test::contains(message, "spheres cannot be read from ." + std::string(name).substr(2)));
+    EXPECT_TRUE(test::contains(message, "ends in .csv, .json or .ply"));
+  }
+  EXPECT_TRUE(test::contains(test::message_of<UsageError>([] { sphere_format_to_write("s.xyz"); }),
+                             ".ply, .vtp (ParaView), .data (LAMMPS) or .txt (YADE)"));
 }
 
 TEST_F(SphereTable, KindMayBeMissing) {
@@ -63,7 +99,7 @@ TEST_F(SphereTable, NonsenseIsRefusedWithItsPlace) {
       refusal("a.json", R"({"schema": "aerate.spheres", "unit": "mm", "spheres": [[1, 2, 3]]})"),
       "sphere 1"));
   EXPECT_TRUE(test::contains(refusal("a.json", "[1, 2, 3]"), "a.json"));
-  const std::string ply = sphere_table(some_packing(), SphereFormat::ply);
+  const std::string ply = sphere_table(some_packing(), SphereFormat::ply, {});
   const std::string one_sphere =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
       "property double radius\nproperty uchar kind\nend_header\n1 2 3 4 ";
@@ -90,7 +126,7 @@ TEST_F(SphereTable, MarksAndLineEndsOfSpreadsheetsAreRead) {
   const auto csv = folder_.write("s.csv", "\xEF\xBB\xBFx,y,z,radius,kind\r\n1,2,3,4,lattice\r\n\r\n");
   ASSERT_EQ(read_sphere_table(csv).size(), 1U);
   EXPECT_EQ(read_sphere_table(csv)[0].kind, SphereKind::lattice);
-  std::string ply = sphere_table(some_packing(), SphereFormat::ply);
+  std::string ply = sphere_table(some_packing(), SphereFormat::ply, {});
   for (std::size_t end = ply.find('\n'); end != std::string::npos; end = ply.find('\n', end + 2)) {
     ply.insert(end, 1, '\r');
   }

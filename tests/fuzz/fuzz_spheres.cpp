@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       aerate::fuzz::require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z), "places are finite");
       aerate::fuzz::require(std::isfinite(sphere.radius) && sphere.radius > 0, "radii are positive");
     }
-    const std::vector<Sphere> again = read(format, format.write(spheres));
+    const std::vector<Sphere> again = read(format, format.write(spheres, {}));
     aerate::fuzz::require(std::equal(spheres.begin(), spheres.end(), again.begin(), again.end(), same),
                           "what is written reads back as it was");
   });

@@ -89,7 +89,7 @@ TEST(Budget, VoidsBeyondMemoryAreRefusedWithAnEstimate) {
 TEST(SphereTable, HasOneLineForEachSphere) {
   Packing packing;
   packing.spheres = {{{1.5, -2, 0.1}, 3, SphereKind::tetrahedral}};
-  EXPECT_EQ(sphere_table(packing, SphereFormat::csv), "x,y,z,radius,kind\n1.5,-2,0.1,3,tetrahedral\n");
+  EXPECT_EQ(sphere_table(packing, SphereFormat::csv, {}), "x,y,z,radius,kind\n1.5,-2,0.1,3,tetrahedral\n");
 }
 
 }  // namespace
