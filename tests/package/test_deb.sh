@@ -49,7 +49,7 @@ files() {
 }
 # The Python module is for who has Python.
 has_module=0
-if dpkg-deb --contents /tmp/aerate.deb | grep -q /dist-packages/aerate/; then
+if dpkg-deb --contents /tmp/aerate.deb | grep /dist-packages/aerate/ >/dev/null; then
   has_module=1
   apt-get install -qq --no-install-recommends python3-numpy >/tmp/log 2>&1 || { cat /tmp/log; exit 1; }
 fi
