@@ -97,6 +97,7 @@ struct HollowCommand {
         flavor_option(config) {
     command.add_option("-o,--output", output, "The result: " + endings_that_are_written())
         ->required()
+        ->check(names_a_file())
         ->type_name("FILE");
     command
         .add_option(
@@ -146,9 +147,9 @@ struct HollowCommand {
             "what it stands on, and with --stand=MM further by so much (less, if negative)")
         ->type_name("[=MM]");
     command
-        .add_option(
-            "--spheres", spheres,
-            "Do not pack, but use these spheres (as 'aerate pack' writes them), after the same checks")
+        .add_option("--spheres", spheres,
+                    "Do not pack, but use these spheres (a .csv, .json or .ply of 'aerate pack'), after the "
+                    "same checks")
         ->type_name("FILE");
     command
         .add_option("--max-triangles", max_triangles,
@@ -451,7 +452,7 @@ CalledResult call_hollow(const Call& call, Monitor& monitor) {
   for (JobForm& form : forms) form.options.arrays = call.arrays;
   CalledResult result;
   const auto keep_mesh = [&](const HollowedForm& made, const HollowReport&, Monitor&) {
-    result.mesh = as_read_back(made.hollowed.carved.solid.mesh);
+    result.mesh = as_from_file(made.hollowed.carved.solid.mesh);
   };
   run_called(command.run_options, command.files(), call,
              [&] { result.report = to_json(hollow(forms, monitor, keep_mesh)); });

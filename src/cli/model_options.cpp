@@ -59,6 +59,13 @@ std::string capitalised(std::string text) {
 
 }  // namespace
 
+CLI::Validator names_a_file() {
+  const auto check = [](const std::string& name) {
+    return name.empty() ? "no name was given" : std::string();
+  };
+  return CLI::Validator(check, "");
+}
+
 ModelOptions::ModelOptions(CLI::App& command) {
   command.add_option("MODEL", path, "The model: " + names_that_are_read())->required()->type_name("");
   add_size_options(command);

@@ -16,6 +16,9 @@ namespace aerate::cli {
 
 // Options that several commands share. Each adds itself to a command and is read after parsing.
 
+// Accepts any name but none.
+CLI::Validator names_a_file();
+
 // A file that a job reads, and what it is: "model", "configuration file".
 struct NamedInput {
   std::string what;

@@ -58,6 +58,7 @@ struct PackCommand {
                                 "planes, .csv or .json, or their pieces as closed shells, {}",
                                 endings_of_sphere_tables(), endings_that_are_written()))
         ->required()
+        ->check(names_a_file())
         ->type_name("FILE");
   }
 

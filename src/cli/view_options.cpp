@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "cli/model_options.h"
 #include "cli/numbers.h"
 #include "core/error.h"
 
@@ -36,13 +37,10 @@ std::optional<PictureSize> parse_picture_size(const std::string& text) {
 }
 
 ViewOptions::ViewOptions(CLI::App& command, const std::string& what) {
-  const auto is_named = [](const std::string& name) {
-    return name.empty() ? "no name was given" : std::string();
-  };
   command
       .add_option("--picture", picture_,
                   fmt::format("Also draw a picture of {}, cut open, with its figures (.png)", what))
-      ->check(CLI::Validator(is_named, ""))
+      ->check(names_a_file())
       ->type_name("FILE");
   of_picture_.push_back(
       command
@@ -76,7 +74,7 @@ ViewOptions::ViewOptions(CLI::App& command, const std::string& what) {
           fmt::format("Also make a page of {}, to turn and cut in a browser, with its figures: one file that "
                       "needs no network (.html)",
                       what))
-      ->check(CLI::Validator(is_named, ""))
+      ->check(names_a_file())
       ->type_name("FILE");
 }
 

@@ -119,7 +119,7 @@ Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, cons
   return with_void_shells_turned(std::move(mesh), solid);
 }
 
-Mesh as_read_back(const Mesh& mesh) {
+Mesh as_from_file(const Mesh& mesh) {
   Welder welder(mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles)
     welder.add_triangle(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
@@ -135,7 +135,7 @@ void write_beside(const Solid& solid, AnnouncedFile* pending, const SolidFormat&
   }
   monitor.stage("check");
   check(pending != nullptr ? read_back_solid(solid, pending->file().path(), format, monitor)
-                           : as_read_back(solid.mesh));
+                           : as_from_file(solid.mesh));
   monitor.check_interrupted();
 }
 

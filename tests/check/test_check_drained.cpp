@@ -27,6 +27,7 @@
 namespace aerate {
 namespace {
 
+using test::as_read_back;
 using test::contains;
 using test::message_of;
 
@@ -74,7 +75,7 @@ class CheckDrained : public testing::Test {
     return sound;
   }
 
-  OutputFacts check() { return check(test::as_read_back(solid_.mesh)); }
+  OutputFacts check() { return check(as_read_back(solid_.mesh)); }
   OutputFacts check(const Mesh& written) {
     Monitor silent;
     return check_written(written,

@@ -136,6 +136,16 @@ TEST(BadInput, UnknownEnding) {
   expect_refused(job, run(job.hollow(model)), kUnreadable, {"model.step"});
 }
 
+TEST(BadInput, AnOutputWithoutAName) {
+  const Job job;
+  const auto model = job.input("block.stl", block());
+  for (const char* command : {"hollow", "pack"}) {
+    const ProcessResult result = run({AERATE_EXECUTABLE, command, model, "-o", ""});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(contains(result.err, "no name was given")) << result.err;
+  }
+}
+
 // A block without one of its sides: a hole as large as the model.
 Mesh open_block() {
   Mesh mesh = block();

@@ -127,6 +127,8 @@ TEST_F(CalledCommands, WhatNeedsAFileIsRefusedWithoutOne) {
 TEST_F(CalledCommands, WhatTheProgramRefusesIsRefused) {
   EXPECT_TRUE(contains(refusal("hollow", {"--wall=thick"}), "'thick' is not a number"));
   EXPECT_TRUE(contains(refusal("hollow", {"--json=report.json"}), "--json: the report is what"));
+  for (const char* name : {"hollow", "pack"})
+    EXPECT_TRUE(contains(refusal(name, {"--output="}), "--output: 1 required FILE missing"));
   EXPECT_TRUE(contains(refusal("pack", {"--process=list"}), "--process list is for the command line"));
   EXPECT_TRUE(contains(refusal("load", {"--weld=1"}), "--weld"));
   EXPECT_TRUE(contains(refusal("hollow", {"--output=" + file_.string()}), "the output is the model itself"));

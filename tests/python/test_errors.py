@@ -56,6 +56,9 @@ def test_categories_are_the_exit_statuses():
         ({"drain": False, "escape_hole": (1, 2, 3)}, "escape-hole"),
         ({"output": "result.docx"}, ".docx"),
         ({"output": "a\0.stl"}, "null character"),
+        ({"output": ""}, "--output: '' is no value"),
+        ({"stand": ""}, "--stand: '' is no value"),
+        ({"escape_hole": ["1,2,3", ""], "process": "sla"}, "--escape-hole: '' is no value"),
         ({"config": "there-is-none.toml"}, "there-is-none.toml"),
     ],
 )

@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from conftest import BUNNY, run_program
+from conftest import BUNNY, ROOT, run_program
 from grains import packed
 
 SCRIPT = """
@@ -35,6 +35,20 @@ def test_lammps_reads_places_diameters_and_the_box(fresh):
     bounds = [line.split() for line in lines[lines.index("ITEM: BOX BOUNDS ff ff ff") + 1:][:3]]
     model = report["input"]["box"]
     assert np.allclose(np.array(bounds, float).T, [model["lower_mm"], model["upper_mm"]], rtol=1e-12)
+
+
+@pytest.mark.skipif(shutil.which("lmp") is None, reason="lammps is not installed")
+def test_the_script_of_the_docs_gives_a_density(fresh):
+    spheres, _ = packed(fresh)
+    run_program("pack", BUNNY, "-o", "packing.data", "--max-voids", 50)
+    text = (ROOT / "docs/packing.md").read_text()
+    block = text[text.index("    units lj"):].partition("\n\n")[0]
+    assert "set type 1 density 0.0026" in block
+    (fresh / "script").write_text(block + "\nwrite_dump all custom read.txt mass modify sort id format float %.17g\n")
+    done = subprocess.run(["lmp", "-in", "script", "-log", "none"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    masses = np.loadtxt("read.txt", skiprows=9)
+    assert np.allclose(masses, 0.0026 * 4 / 3 * np.pi * spheres[:, 3] ** 3, rtol=1e-12, atol=0)
 
 
 def test_the_file_says_its_units(fresh):

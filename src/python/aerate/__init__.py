@@ -32,3 +32,7 @@ __all__ = [
     "load",
     "pack",
 ]
+
+# As which they are shown.
+for _name in __all__:
+    globals()[_name].__module__ = __name__

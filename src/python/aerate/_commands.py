@@ -115,7 +115,7 @@ def _is_point(items):
 
 def _word(option, value):
     """A value as it is written on a command line."""
-    if isinstance(value, (str, bytes, os.PathLike)):
+    if isinstance(value, (str, bytes, os.PathLike)) and value:
         return os.fsencode(value)
     if isinstance(value, numbers.Integral) and _is_number(value):
         return b"%d" % int(value)
