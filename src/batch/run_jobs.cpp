@@ -258,8 +258,9 @@ void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const R
               Monitor& monitor) {
   const PrivateFolder folder(monitor);
   std::vector<BatchRow*> in_order = rows;
-  std::ranges::stable_partition(
-      in_order, [&](const BatchRow* row) { return !is_marked_begun(results.path(), *row->job); });
+  // Not std::ranges': clang 14 does not compile that.
+  std::stable_partition(in_order.begin(), in_order.end(),
+                        [&](const BatchRow* row) { return !is_marked_begun(results.path(), *row->job); });
   for (BatchRow* const row : in_order) {
     monitor.check_interrupted();
     const PlannedJob& job = *row->job;

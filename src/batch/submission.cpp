@@ -45,7 +45,10 @@ Json json_of(const PlannedJob& job, const fs::path& results) {
 
 PlannedJob job_of(const Json& json, const fs::path& results) {
   const auto path = [](const Json& text) { return fs::path(text.get<std::string>()); };
-  const auto below = [&](const Json& text) { return text == "" ? fs::path() : results / path(text); };
+  const auto below = [&](const Json& text) {
+    const fs::path name = path(text);
+    return name.empty() ? fs::path() : results / name;
+  };
   const Json &paths = json.at("paths"), &estimate = json.at("estimate");
   return {.number = json.at("number"),
           .model = path(json.at("model")),

@@ -98,7 +98,7 @@ void sleep(std::chrono::milliseconds time, Monitor& monitor) {
 std::string name_of_this_machine() {
   std::string name(256, '\0');
   if (::gethostname(name.data(), name.size() - 1) != 0) return "this machine";
-  return name.c_str();
+  return std::string(name.data());
 }
 
 // The number that Slurm gives a task in its array.
@@ -119,6 +119,7 @@ std::string SlurmEngine::in_words(const std::vector<BatchRow*>& to_do) const {
   const std::vector<TaskArray> arrays =
       batch::task_arrays(to_do, std::vector<bool>(to_do.size()), {.models = options_.models_of_task});
   std::vector<std::string> words;
+  words.reserve(arrays.size());
   for (const TaskArray& array : arrays)
     words.push_back(fmt::format("{} of {} and {} each at most", counted(array.tasks.size(), "task", "tasks"),
                                 format_bytes(array.memory_bytes), in_time(array.seconds)));
