@@ -298,7 +298,11 @@ PackedShapes pack_shapes(const PackOptions& options, Monitor& monitor) {
     write_bytes(table, file->file());
   }
   const auto& shapes = packed.shapes;
-  views.write([&] { return scene_of(model, surface, report, shapes ? &*shapes : nullptr, log); }, log);
+  views.write(
+      [&, &of_model = surface] {
+        return scene_of(model, of_model, report, shapes ? &*shapes : nullptr, log);
+      },
+      log);
   views.commit_with(file ? std::vector{&file->file()} : std::vector<PendingFile*>{});
   report.stages = log.finish();
   report.notices = log.notices();
