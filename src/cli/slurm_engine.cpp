@@ -98,7 +98,7 @@ void sleep(std::chrono::milliseconds time, Monitor& monitor) {
 std::string name_of_this_machine() {
   std::string name(256, '\0');
   if (::gethostname(name.data(), name.size() - 1) != 0) return "this machine";
-  return std::string(name.data());
+  return name.substr(0, name.find('\0'));
 }
 
 // The number that Slurm gives a task in its array.
