@@ -269,25 +269,35 @@ struct Streams {
 // The two descriptors that go with a request: the end of a keeper's life, and where it reports to.
 using Descriptors = std::array<int, 2>;
 
-union Control {  // aligned as the system wants it
-  std::array<char, CMSG_SPACE(sizeof(Descriptors))> bytes;
-  cmsghdr header;
+// One message of a socket: a text, and room for descriptors.
+class Message {
+ public:
+  explicit Message(std::string& text) : part_{text.data(), text.size()} {
+    header_.msg_iov = &part_;
+    header_.msg_iovlen = 1;
+    header_.msg_control = control_.data();
+    header_.msg_controllen = control_.size();
+  }
+  Message(const Message&) = delete;
+  Message& operator=(const Message&) = delete;
+
+  msghdr& header() { return header_; }
+  cmsghdr* descriptors() { return CMSG_FIRSTHDR(&header_); }
+
+ private:
+  iovec part_;
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(Descriptors))> control_{};
+  msghdr header_{};
 };
 
 void send_request(int socket, std::string& text, const Descriptors& descriptors) {
-  Control control{};
-  iovec part{text.data(), text.size()};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control.bytes.data();
-  message.msg_controllen = control.bytes.size();
-  cmsghdr* const header = CMSG_FIRSTHDR(&message);
+  Message message(text);
+  cmsghdr* const header = message.descriptors();
   header->cmsg_level = SOL_SOCKET;
   header->cmsg_type = SCM_RIGHTS;
   header->cmsg_len = CMSG_LEN(sizeof(descriptors));
   std::memcpy(CMSG_DATA(header), descriptors.data(), sizeof(descriptors));
-  while (::sendmsg(socket, &message, MSG_NOSIGNAL) < 0)
+  while (::sendmsg(socket, &message.header(), MSG_NOSIGNAL) < 0)
     if (errno != EINTR) throw cannot_be_run("a process", errno);
 }
 
@@ -298,19 +308,12 @@ std::optional<std::pair<std::string, Descriptors>> received_request(int socket) 
   }
   if (size <= 0) return std::nullopt;
   std::string text(static_cast<std::size_t>(size), '\0');
-  Control control{};
-  iovec part{text.data(), text.size()};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = control.bytes.data();
-  message.msg_controllen = control.bytes.size();
-  while ((size = ::recvmsg(socket, &message, MSG_CMSG_CLOEXEC)) < 0 && errno == EINTR) {
+  Message message(text);
+  while ((size = ::recvmsg(socket, &message.header(), MSG_CMSG_CLOEXEC)) < 0 && errno == EINTR) {
   }
-  const cmsghdr* const header = size > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
-  if (header == nullptr) return std::nullopt;
+  if (size <= 0 || message.descriptors() == nullptr) return std::nullopt;
   Descriptors descriptors{};
-  std::memcpy(descriptors.data(), CMSG_DATA(header), sizeof(descriptors));
+  std::memcpy(descriptors.data(), CMSG_DATA(message.descriptors()), sizeof(descriptors));
   return std::pair(std::move(text), descriptors);
 }
 

@@ -300,7 +300,9 @@ struct BatchCommand {
 
   void run() const {
     require_sense();
-    const OwnCommands commands(exit_status_of);  // before there are threads
+    // Before there are threads.
+    std::optional<OwnCommands> commands;
+    if (!is_asking() && !is_dry_run && !is_on_cluster()) commands.emplace(exit_status_of);
     InterruptGuard interrupt;
     TerminalMonitor monitor(interrupt, verbosity());
     SlurmEngine cluster(output, slurm_options(), monitor);
@@ -314,7 +316,7 @@ struct BatchCommand {
     } else if (is_on_cluster()) {
       run_on_cluster(plan, cluster, monitor);
     } else {
-      run_here(plan, commands, monitor);
+      run_here(plan, *commands, monitor);
     }
   }
 

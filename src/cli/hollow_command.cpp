@@ -28,6 +28,7 @@
 #include "core/error.h"
 #include "core/listed.h"
 #include "files/formats.h"
+#include "files/weld.h"
 #include "packing/methods.h"
 #include "pipeline/hollow.h"
 #include "pipeline/lightning_modifiers.h"
@@ -452,7 +453,7 @@ CalledResult call_hollow(const Call& call, Monitor& monitor) {
   for (JobForm& form : forms) form.options.arrays = call.arrays;
   CalledResult result;
   const auto keep_mesh = [&](const HollowedForm& made, const HollowReport&, Monitor&) {
-    result.mesh = as_from_file(made.hollowed.carved.solid.mesh);
+    result.mesh = as_read_back(made.hollowed.carved.solid.mesh);
   };
   run_called(command.run_options, command.files(), call,
              [&] { result.report = to_json(hollow(forms, monitor, keep_mesh)); });

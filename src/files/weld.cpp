@@ -92,4 +92,11 @@ Mesh weld(std::span<const Vec3f> corners) {
   return std::move(welder).finish();
 }
 
+Mesh as_read_back(const Mesh& mesh) {
+  Welder welder(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles)
+    welder.add_triangle(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+  return std::move(welder).finish();
+}
+
 }  // namespace aerate

@@ -49,4 +49,7 @@ class Welder {
 // The same for 3 m corners, three for each triangle.
 Mesh weld(std::span<const Vec3f> corners);
 
+// As a file gives a mesh back: corners joined, vertices numbered in order of first use.
+Mesh as_read_back(const Mesh& mesh);
+
 }  // namespace aerate

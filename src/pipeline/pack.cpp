@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/overhang.h"
 #include "files/sphere_table.h"
+#include "files/weld.h"
 #include "packing/spread_out.h"
 #include "packing/verify.h"
 #include "pipeline/announced_file.h"
@@ -319,7 +320,7 @@ PackedPieces pack_pieces(const PackOptions& options, Monitor& monitor) {
   PackedShapes packed = pack_shapes(options, monitor);
   PackedPieces result{std::move(packed.report), {}};
   if (result.report.cells && result.report.cells->pieces)
-    result.pieces = as_from_file(pieces_of(*packed.shapes));
+    result.pieces = as_read_back(pieces_of(*packed.shapes));
   return result;
 }
 

@@ -119,13 +119,6 @@ Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, cons
   return with_void_shells_turned(std::move(mesh), solid);
 }
 
-Mesh as_from_file(const Mesh& mesh) {
-  Welder welder(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles)
-    welder.add_triangle(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
-  return std::move(welder).finish();
-}
-
 void write_beside(const Solid& solid, AnnouncedFile* pending, const SolidFormat& format,
                   const std::function<void(const Mesh& written)>& check, Monitor& monitor) {
   if (pending != nullptr) {
@@ -135,7 +128,7 @@ void write_beside(const Solid& solid, AnnouncedFile* pending, const SolidFormat&
   }
   monitor.stage("check");
   check(pending != nullptr ? read_back_solid(solid, pending->file().path(), format, monitor)
-                           : as_from_file(solid.mesh));
+                           : as_read_back(solid.mesh));
   monitor.check_interrupted();
 }
 

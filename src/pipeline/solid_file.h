@@ -48,9 +48,6 @@ void write_solid(const Solid& solid, const PendingFile& file, const SolidFormat&
 Mesh read_back_solid(const Solid& solid, const std::filesystem::path& path, const SolidFormat& format,
                      Monitor& monitor);
 
-// The mesh as it comes out of any file that it was written to.
-Mesh as_from_file(const Mesh& mesh);
-
 // Writes a solid beside its target, reads it back and lets `check` look at it. Nothing becomes the target yet: what `check`
 // throws leaves that as it was. Without a file, `check` looks at what would have been read.
 void write_beside(const Solid& solid, AnnouncedFile* pending, const SolidFormat& format,

@@ -14,17 +14,16 @@
 #include "check/check_written.h"
 #include "core/error.h"
 #include "core/overhang.h"
+#include "files/weld.h"
 #include "packing/packing_cells.h"
 #include "printing/cells/carve_drained_cells.h"
 #include "printing/cells/shape_cells.h"
 #include "tests/support/caught.h"
-#include "tests/support/read_back.h"
 #include "tests/support/shapes.h"
 
 namespace aerate {
 namespace {
 
-using test::as_read_back;
 using test::contains;
 using test::message_of;
 

@@ -10,6 +10,7 @@
 #include "check/crossings.h"
 #include "core/error.h"
 #include "core/overhang.h"
+#include "files/weld.h"
 #include "mesh/outward_shells.h"
 #include "packing/adaptive.h"
 #include "packing/plan_drainage.h"
@@ -20,14 +21,12 @@
 #include "printing/carve_drained.h"
 #include "tests/support/caught.h"
 #include "tests/support/files.h"
-#include "tests/support/read_back.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace aerate {
 namespace {
 
-using test::as_read_back;
 using test::contains;
 using test::message_of;
 

@@ -5,17 +5,16 @@
 
 #include "check/check_written.h"
 #include "core/error.h"
+#include "files/weld.h"
 #include "pipeline/keep_solid.h"
 #include "pipeline/prepare.h"
 #include "printing/carve.h"
 #include "tests/support/caught.h"
-#include "tests/support/read_back.h"
 #include "tests/support/shapes.h"
 
 namespace aerate {
 namespace {
 
-using test::as_read_back;
 using test::contains;
 using test::message_of;
 

@@ -9,9 +9,9 @@
 
 #include "check/check_opened.h"
 #include "core/error.h"
+#include "files/weld.h"
 #include "printing/cut_through.h"
 #include "tests/support/caught.h"
-#include "tests/support/read_back.h"
 #include "tests/support/shapes.h"
 
 // Models whose own cavities were opened: what is right passes, and each way of being wrong is seen.
