@@ -88,6 +88,12 @@ void write(const fs::path& path, std::string_view bytes) {
   file.commit();
 }
 
+// Of a submission, as a file of one line has it; empty if there is none.
+std::string name_in(const fs::path& file) {
+  std::error_code ignored;
+  return fs::exists(file, ignored) ? std::string(without_blanks(read_text(file))) : std::string();
+}
+
 }  // namespace
 
 fs::path submissions_folder(const fs::path& results) {
@@ -146,18 +152,18 @@ Submission read_submission(const fs::path& file) {
 }
 
 std::optional<Submission> last_submission(const fs::path& results) {
-  const fs::path last = submissions_folder(results) / kLast;
+  const std::string name = name_in(submissions_folder(results) / kLast);
   std::error_code ignored;
-  if (!fs::exists(last, ignored)) return std::nullopt;
-  Submission submission =
-      read_submission(submission_path(results, std::string(without_blanks(read_text(last)))));
-  submission.is_over = fs::exists(submissions_folder(results) / kOver, ignored);
+  // A file that is gone was being removed.
+  if (name.empty() || !fs::exists(submission_path(results, name), ignored)) return std::nullopt;
+  Submission submission = read_submission(submission_path(results, name));
+  submission.is_over = name_in(submissions_folder(results) / kOver) == name;
   return submission;
 }
 
-void mark_submission_over(const fs::path& results) {
+void mark_submission_over(const fs::path& results, const Submission& submission) {
   try {
-    write(submissions_folder(results) / kOver, "");
+    write(submissions_folder(results) / kOver, submission.name + "\n");
   } catch (const FailureError&) {
     // A full disk: the cluster is asked again then.
   }
@@ -165,6 +171,7 @@ void mark_submission_over(const fs::path& results) {
 
 void clear_submissions(const fs::path& results) {
   std::error_code error;
+  fs::remove(submissions_folder(results) / kLast, error);  // first: without it nothing of the rest counts
   fs::remove_all(submissions_folder(results), error);
   if (!error) fs::create_directories(submissions_folder(results), error);
   if (error) throw FailureError(fmt::format("{}: {}", submissions_folder(results).string(), error.message()));

@@ -42,8 +42,8 @@ Submission read_submission(const std::filesystem::path& file);
 // Nothing if there is none. Throws as read_submission does.
 std::optional<Submission> last_submission(const std::filesystem::path& results);
 
-// None of the last one's tasks is under way any more. Where that cannot be written, nothing is lost but the knowledge.
-void mark_submission_over(const std::filesystem::path& results);
+// None of its tasks is under way any more. Where that cannot be written, nothing is lost but the knowledge.
+void mark_submission_over(const std::filesystem::path& results, const Submission& submission);
 
 // Removes all that is known of submissions, of which none is under way.
 void clear_submissions(const std::filesystem::path& results);

@@ -426,10 +426,9 @@ struct TaskCommand {
   }
 
   void run() const {
-    const OwnCommands commands(exit_status_of);
     InterruptGuard interrupt;
     TerminalMonitor monitor(interrupt, Verbosity::normal);
-    run_cluster_task(submission, array, commands, monitor);
+    run_cluster_task(submission, array, monitor);
   }
 
   std::string submission;

@@ -18,11 +18,13 @@
 #include "batch/job_state.h"
 #include "batch/summary.h"
 #include "cli/batch_outcome.h"
+#include "cli/command_line.h"
 #include "cli/terminal.h"
 #include "core/error.h"
 #include "core/listed.h"
 #include "core/printable.h"
 #include "pipeline/memory.h"
+#include "printing/slicers/child_process.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate::cli {
@@ -101,6 +103,20 @@ std::string name_of_this_machine() {
   return name.substr(0, name.find('\0'));
 }
 
+// The place in which the batch was begun, with the program that it was begun by.
+void enter(const Submission& submission) {
+  const std::string machine = name_of_this_machine();
+  if (submission.version != kBatchVersion)
+    throw FailureError(fmt::format("{}: the program here is {}, the batch is of {}", machine, kBatchVersion,
+                                   submission.version));
+  std::error_code error;
+  fs::current_path(submission.working_folder, error);
+  if (error)
+    throw FailureError(
+        fmt::format("{}: {}: {}", machine, submission.working_folder.string(), error.message()),
+        "the folder in which the batch was begun has to be there under the same name on all nodes");
+}
+
 // The number that Slurm gives a task in its array.
 std::size_t number_of_task() {
   const char* const text = std::getenv("SLURM_ARRAY_TASK_ID");
@@ -158,8 +174,7 @@ bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_
       submission.arrays[i].id =
           batch::submit_array(submission, i, results_, program, options_.request, monitor_);
     } catch (const FailureError&) {
-      if (i > 0) batch::cancel_tasks(submission, monitor_);
-      batch::clear_submissions(results_);
+      take_back(submission);
       throw;
     }
     tasks += submission.arrays[i].tasks.size();
@@ -170,6 +185,28 @@ bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_
     std::cout << fmt::format("{} handed over in {}: {}\n", counted(to_do.size(), "model", "models"),
                              counted(tasks, "task", "tasks"), job_in_words(submission))
               << std::flush;
+  return true;
+}
+
+// Of which Slurm may have taken a part, whatever it said. It stays known where that cannot be found out.
+void SlurmEngine::take_back(const Submission& submission) const {
+  try {
+    batch::cancel_tasks(submission, monitor_);
+    if (wait_for_end(submission)) batch::clear_submissions(results_);
+  } catch (const FailureError&) {
+    // What was refused is told, and not this.
+  }
+}
+
+// False if it takes too long.
+bool SlurmEngine::wait_for_end(const Submission& submission) const {
+  constexpr std::chrono::seconds kLongest(120);
+  constexpr std::chrono::milliseconds kPause(250);
+  const auto start = std::chrono::steady_clock::now();
+  while (!batch::tasks_under_way(submission, monitor_).none()) {
+    if (std::chrono::steady_clock::now() - start > kLongest) return false;
+    sleep(kPause, monitor_);
+  }
   return true;
 }
 
@@ -234,20 +271,21 @@ void SlurmEngine::status() {
   require_stdout_written();
 }
 
+// Alone in the folder: what has been handed over since it was asked for is seen now.
+TasksUnderWay SlurmEngine::end_submission(const Submission& submission) const {
+  TasksUnderWay tasks = batch::tasks_under_way(submission, monitor_);
+  if (tasks.none()) batch::mark_submission_over(results_, submission);
+  return tasks;
+}
+
 void SlurmEngine::cancel() {
   const Submission cancelled = submission();
-  constexpr std::chrono::seconds kLongest(120);
-  constexpr std::chrono::milliseconds kPause(250);
   batch::cancel_tasks(cancelled, monitor_);
-  const auto start = std::chrono::steady_clock::now();
-  while (!batch::tasks_under_way(cancelled, monitor_).none()) {
-    if (std::chrono::steady_clock::now() - start > kLongest)
-      throw FailureError(fmt::format("{} has not ended yet", job_in_words(cancelled)),
-                         "ask again with --status");
-    sleep(kPause, monitor_);
-  }
+  if (!wait_for_end(cancelled))
+    throw FailureError(fmt::format("{} has not ended yet", job_in_words(cancelled)),
+                       "ask again with --status");
   const batch::ResultsFolder folder(results_, cancelled.plan, monitor_);
-  batch::mark_submission_over(results_);
+  end_submission(cancelled);
   const std::vector<BatchRow> rows = rows_of(cancelled, true);
   try_to_summarise(rows, results_, options_.is_quiet);
   const batch::Counts counts = batch::counts_of(rows);
@@ -259,11 +297,11 @@ void SlurmEngine::cancel() {
 
 void SlurmEngine::collect() {
   const Submission collected = submission();
-  const TasksUnderWay tasks = batch::tasks_under_way(collected, monitor_);
+  TasksUnderWay tasks = batch::tasks_under_way(collected, monitor_);
   std::optional<batch::ResultsFolder> folder;  // alone in it when all have ended
   if (tasks.none()) {
     folder.emplace(results_, collected.plan, monitor_);
-    batch::mark_submission_over(results_);
+    tasks = end_submission(collected);
   }
   const std::vector<BatchRow> rows = rows_of(collected, tasks.none());
   const auto is_new =
@@ -290,23 +328,16 @@ void require_no_cluster_at_work(const fs::path& results, Monitor& monitor) {
   throw FailureError(
       fmt::format("{}: {} is at work there ({})", results.string(), job_in_words(*last),
                   under_way_in_words(tasks)),
-      fmt::format("'aerate batch -o {} --status' says how far it is, --cancel ends it, --wait waits for it",
-                  results.string()));
+      fmt::format(
+          "'aerate batch -o {} --status' says how far it is, --cancel ends it; with --engine slurm --wait "
+          "this command waits for it",
+          results.string()));
 }
 
-void run_cluster_task(const fs::path& submission_file, std::size_t array, const OwnCommands& commands,
-                      Monitor& monitor) {
+void run_cluster_task(const fs::path& submission_file, std::size_t array, Monitor& monitor) {
   const Submission submission = batch::read_submission(submission_file);
-  const std::string machine = name_of_this_machine();
-  if (submission.version != kBatchVersion)
-    throw FailureError(fmt::format("{}: the program here is {}, the batch is of {}", machine, kBatchVersion,
-                                   submission.version));
-  std::error_code error;
-  fs::current_path(submission.working_folder, error);
-  if (error)
-    throw FailureError(
-        fmt::format("{}: {}: {}", machine, submission.working_folder.string(), error.message()),
-        "the folder in which the batch was begun has to be there under the same name on all nodes");
+  enter(submission);
+  const OwnCommands commands(exit_status_of);  // in the folder that names of models are relative to
   const std::size_t number = number_of_task();
   if (array >= submission.arrays.size() || number >= submission.arrays[array].tasks.size())
     throw UsageError(fmt::format("{} has no task {} of array {}", submission_file.string(), number, array));
@@ -321,7 +352,8 @@ void run_cluster_task(const fs::path& submission_file, std::size_t array, const 
   in_task.reserve(rows.size());
   for (BatchRow& row : rows) in_task.push_back(&row);
   const batch::ResultsFolder folder(results, jobs, monitor, batch::Use::together);
-  std::cout << fmt::format("{} on {}\n", counted(jobs.size(), "model", "models"), machine) << std::flush;
+  std::cout << fmt::format("{} on {}\n", counted(jobs.size(), "model", "models"), name_of_this_machine())
+            << std::flush;
   const auto run = [&](const ChildCommand& command, Monitor& of_job) {
     return commands.run(command, of_job);
   };

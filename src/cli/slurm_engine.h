@@ -8,7 +8,6 @@
 #include "batch/slurm.h"
 #include "batch/task_arrays.h"
 #include "core/monitor.h"
-#include "printing/slicers/child_process.h"
 
 namespace aerate::cli {
 
@@ -46,6 +45,9 @@ class SlurmEngine {
 
  private:
   batch::Submission submission() const;
+  void take_back(const batch::Submission& submission) const;
+  bool wait_for_end(const batch::Submission& submission) const;
+  batch::TasksUnderWay end_submission(const batch::Submission& submission) const;
   std::vector<batch::BatchRow> rows_of(const batch::Submission& submission, bool is_over) const;
 
   std::string results_;
@@ -57,7 +59,6 @@ class SlurmEngine {
 void require_no_cluster_at_work(const std::filesystem::path& results, Monitor& monitor);
 
 // What a task of the cluster does, 'aerate batch-task SUBMISSION ARRAY'.
-void run_cluster_task(const std::filesystem::path& submission, std::size_t array, const OwnCommands& commands,
-                      Monitor& monitor);
+void run_cluster_task(const std::filesystem::path& submission, std::size_t array, Monitor& monitor);
 
 }  // namespace aerate::cli

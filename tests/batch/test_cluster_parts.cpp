@@ -138,8 +138,15 @@ TEST(Submissions, AreReadAsTheyWereWrittenWhateverTheFolderIsCalled) {
   EXPECT_EQ(read->arrays[0].id, "17");
   EXPECT_EQ(read->arrays[0].tasks[0].jobs, (std::vector<std::size_t>{0}));
   EXPECT_FALSE(read->is_over);
-  mark_submission_over(folder.path() / "moved");
+  mark_submission_over(folder.path() / "moved", *read);
   EXPECT_TRUE(last_submission(folder.path() / "moved")->is_over);
+  // Another one is not over by that.
+  written.name = "aerate-2";
+  keep_submission(folder.path() / "moved", written);
+  EXPECT_FALSE(last_submission(folder.path() / "moved")->is_over);
+  // What is left of one that was being removed is none.
+  fs::remove(submission_path(folder.path() / "moved", "aerate-2"));
+  EXPECT_FALSE(last_submission(folder.path() / "moved"));
 }
 
 TEST(Submissions, AFileThatIsNoneIsRefused) {
