@@ -1,7 +1,9 @@
 #include "printing/slicers/child_process.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -11,9 +13,11 @@
 #include <mutex>
 #include <optional>
 #include <poll.h>
+#include <span>
 #include <string_view>
 #include <sys/file.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -24,6 +28,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "files/output_file.h"
 #include "printing/slicers/text_file.h"
 
 namespace aerate {
@@ -41,15 +46,23 @@ std::vector<char*> pointers_to(std::vector<std::string>& strings) {
   return pointers;
 }
 
-std::vector<std::string> merged_environment(const std::vector<std::pair<std::string, std::string>>& added) {
+bool is_called(std::string_view variable, std::string_view pattern) {
+  if (pattern.ends_with('*')) return variable.starts_with(pattern.substr(0, pattern.size() - 1));
+  return variable == pattern;
+}
+
+std::vector<std::string> environment_of(const ChildCommand& command) {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable != nullptr; ++variable) {
-    const std::string_view text = *variable;
-    bool replaced = false;
-    for (const auto& [name, value] : added) replaced = replaced || text.starts_with(name + "=");
-    if (!replaced) variables.emplace_back(text);
+    const std::string_view text = *variable, called = text.substr(0, text.find('='));
+    const bool is_replaced =
+        std::ranges::any_of(command.environment, [&](const auto& added) { return added.first == called; });
+    const bool is_left_out = std::ranges::any_of(
+        command.without, [&](const std::string& pattern) { return is_called(called, pattern); });
+    if (!is_replaced && !is_left_out) variables.emplace_back(text);
   }
-  for (const auto& [name, value] : added) variables.push_back(std::string(name).append("=").append(value));
+  for (const auto& [name, value] : command.environment)
+    variables.push_back(std::string(name).append("=").append(value));
   return variables;
 }
 
@@ -82,6 +95,11 @@ struct KeeperReport {
   int status = 0;
 };
 
+void report_failure(int report_to, int error) {
+  const KeeperReport failure{.error = error, .status = 0};
+  [[maybe_unused]] const ssize_t written = ::write(report_to, &failure, sizeof(failure));
+}
+
 // All that is needed between fork and exec, made before: nothing there may allocate.
 struct Start {
   std::vector<std::string> arguments, variables;
@@ -103,7 +121,6 @@ struct Start {
 }
 
 [[noreturn]] void become_program(const Start& start, pid_t keeper, int report_to) {
-  KeeperReport failure;
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != keeper) ::_exit(1);  // it ended before
@@ -115,8 +132,7 @@ struct Start {
     if (start.own != nullptr) run_own(start, report_to);
     ::execvpe(start.argv[0], start.argv.data(), start.envp.data());
   }
-  failure.error = errno;
-  [[maybe_unused]] const ssize_t written = ::write(report_to, &failure, sizeof(failure));
+  report_failure(report_to, errno);
   ::_exit(1);
 }
 
@@ -155,8 +171,7 @@ int opened_process(pid_t process) {
   const pid_t program = ::fork();
   if (program == 0) become_program(start, keeper, report_to);
   if (program < 0) {
-    const KeeperReport failure{.error = errno, .status = 0};
-    [[maybe_unused]] const ssize_t written = ::write(report_to, &failure, sizeof(failure));
+    report_failure(report_to, errno);
     ::_exit(1);
   }
   keep(program, life, report_to);
@@ -266,13 +281,13 @@ struct Streams {
   fs::path answers, printed;
 };
 
-// The two descriptors that go with a request: the end of a keeper's life, and where it reports to.
-using Descriptors = std::array<int, 2>;
+// The descriptors that go with a request: the end of a keeper's life, where it reports to, and what it holds, if anything.
+constexpr std::size_t kMostDescriptors = 3;
 
-// One message of a socket: a text, and room for descriptors.
+// One message of a socket: a short text, and room for descriptors.
 class Message {
  public:
-  explicit Message(std::string& text) : part_{text.data(), text.size()} {
+  Message(char* text, std::size_t size) : part_{text, size} {
     header_.msg_iov = &part_;
     header_.msg_iovlen = 1;
     header_.msg_control = control_.data();
@@ -286,35 +301,63 @@ class Message {
 
  private:
   iovec part_;
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(Descriptors))> control_{};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(kMostDescriptors * sizeof(int))> control_{};
   msghdr header_{};
 };
 
-void send_request(int socket, std::string& text, const Descriptors& descriptors) {
-  Message message(text);
+// The request is a file's name, since a socket takes no message of any length.
+void send_request(int socket, std::string file, std::span<const int> descriptors) {
+  Message message(file.data(), file.size());
   cmsghdr* const header = message.descriptors();
   header->cmsg_level = SOL_SOCKET;
   header->cmsg_type = SCM_RIGHTS;
-  header->cmsg_len = CMSG_LEN(sizeof(descriptors));
-  std::memcpy(CMSG_DATA(header), descriptors.data(), sizeof(descriptors));
+  header->cmsg_len = CMSG_LEN(descriptors.size_bytes());
+  message.header().msg_controllen = CMSG_SPACE(descriptors.size_bytes());
+  std::memcpy(CMSG_DATA(header), descriptors.data(), descriptors.size_bytes());
   while (::sendmsg(socket, &message.header(), MSG_NOSIGNAL) < 0)
     if (errno != EINTR) throw cannot_be_run("a process", errno);
 }
 
+struct Request {
+  fs::path file;
+  std::vector<int> descriptors;
+};
+
 // Nothing at the end of those who ask.
-std::optional<std::pair<std::string, Descriptors>> received_request(int socket) {
+std::optional<Request> received_request(int socket) {
+  std::array<char, PATH_MAX> file{};
+  Message message(file.data(), file.size());
   ssize_t size = -1;
-  while ((size = ::recv(socket, nullptr, 0, MSG_PEEK | MSG_TRUNC)) < 0 && errno == EINTR) {
-  }
-  if (size <= 0) return std::nullopt;
-  std::string text(static_cast<std::size_t>(size), '\0');
-  Message message(text);
   while ((size = ::recvmsg(socket, &message.header(), MSG_CMSG_CLOEXEC)) < 0 && errno == EINTR) {
   }
-  if (size <= 0 || message.descriptors() == nullptr) return std::nullopt;
-  Descriptors descriptors{};
-  std::memcpy(descriptors.data(), CMSG_DATA(message.descriptors()), sizeof(descriptors));
-  return std::pair(std::move(text), descriptors);
+  const cmsghdr* const header = message.descriptors();
+  if (size <= 0 || header == nullptr) return std::nullopt;
+  std::vector<int> descriptors((header->cmsg_len - CMSG_LEN(0)) / sizeof(int));
+  std::memcpy(descriptors.data(), CMSG_DATA(header), descriptors.size() * sizeof(int));
+  return Request{{file.data(), file.data() + size}, std::move(descriptors)};
+}
+
+// Each with a zero after it.
+std::string text_of(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text.append(word).push_back('\0');
+  return text;
+}
+
+std::vector<std::string> words_in(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(stream, word, '\0');) words.push_back(word);
+  return words;
+}
+
+// Two for each process that is waited for, where the system's usual bound is 1024.
+void allow_many_descriptors() {
+  constexpr rlim_t kMany = 4096;
+  rlimit bounds{};
+  if (::getrlimit(RLIMIT_NOFILE, &bounds) != 0 || bounds.rlim_cur >= kMany) return;
+  bounds.rlim_cur = std::min(kMany, bounds.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &bounds);
 }
 
 // Takes leave of keepers that have ended. Not by ignoring the signal: the processor time of all is to be this one's.
@@ -330,10 +373,9 @@ void bury(int /*signal*/) {
   ::setpgid(0, 0);  // out of reach of the terminal's signals
   ::signal(SIGCHLD, bury);
   while (auto request = received_request(requests)) {
-    auto& [text, descriptors] = *request;
-    std::vector<std::string> words;
-    for (std::size_t begin = 0; begin < text.size(); begin += words.back().size() + 1)
-      words.emplace_back(text.c_str() + begin);
+    std::vector<int>& descriptors = request->descriptors;
+    const int life = descriptors[0], report_to = descriptors[1];
+    std::vector<std::string> words = words_in(request->file);
     Start start{.arguments = {words.begin() + 2, words.end()},
                 .variables = {},
                 .answers = words[0],
@@ -343,12 +385,9 @@ void bury(int /*signal*/) {
     if (keeper == 0) {
       ::close(requests);
       ::signal(SIGCHLD, SIG_DFL);
-      become_keeper(start, descriptors[0], descriptors[1]);
+      become_keeper(start, life, report_to);
     }
-    if (keeper < 0) {
-      const KeeperReport failure{.error = errno, .status = 0};
-      [[maybe_unused]] const ssize_t written = ::write(descriptors[1], &failure, sizeof(failure));
-    }
+    if (keeper < 0) report_failure(report_to, errno);
     for (int& descriptor : descriptors) close_if_open(descriptor);
   }
   while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {
@@ -385,7 +424,7 @@ PrivateFolder::~PrivateFolder() {
 ChildOutcome run_child(const ChildCommand& command, Monitor& monitor) {
   const Streams streams(command);
   const Start start{.arguments = command.arguments,
-                    .variables = merged_environment(command.environment),
+                    .variables = environment_of(command),
                     .answers = streams.answers,
                     .printed = streams.printed};
   RunningChild child(start, monitor);
@@ -405,9 +444,11 @@ OwnCommands::OwnCommands(CommandMain main) {
   const int error = errno;
   ::close(ends[1]);
   requests_ = ends[0];
-  if (starter_ >= 0) return;
-  ::close(requests_);
-  throw cannot_be_run("a process", error);
+  if (starter_ < 0) {
+    ::close(requests_);
+    throw cannot_be_run("a process", error);
+  }
+  allow_many_descriptors();
 }
 
 OwnCommands::~OwnCommands() {
@@ -419,9 +460,13 @@ OwnCommands::~OwnCommands() {
 ChildOutcome OwnCommands::run(const ChildCommand& command, Monitor& monitor) const {
   const Streams streams(command);
   Pipe life, reports;
-  std::string text = streams.answers.string() + '\0' + streams.printed.string() + '\0';
-  for (const std::string& argument : command.arguments) text.append(argument).push_back('\0');
-  send_request(requests_, text, {life.reads, reports.writes});
+  std::vector<std::string> words{streams.answers, streams.printed};
+  words.insert(words.end(), command.arguments.begin(), command.arguments.end());
+  const fs::path request = command.folder / "request";
+  write_bytes(text_of(words), request);
+  std::vector<int> descriptors{life.reads, reports.writes};
+  if (command.held >= 0) descriptors.push_back(command.held);
+  send_request(requests_, fs::absolute(request), descriptors);
   close_if_open(life.reads);
   close_if_open(reports.writes);
   const auto end = [&] {  // which its keeper's is the last of

@@ -34,6 +34,8 @@ struct ChildCommand {
   std::vector<std::string> arguments;  // the program first, looked for on the path; no shell is involved
   std::vector<std::pair<std::string, std::string>> environment;  // added to this process's own
   std::filesystem::path folder;                                  // for what it prints; working folder stays
+  std::vector<std::string> without = {};  // variables that it is not given: names, or "NAME_*"
+  int held = -1;  // a descriptor, as of a lock, that stays open until it has ended with all it started
 };
 
 struct ChildOutcome {
@@ -58,7 +60,7 @@ class OwnCommands {
   OwnCommands(const OwnCommands&) = delete;
   OwnCommands& operator=(const OwnCommands&) = delete;
 
-  // As run_child does, which see; nothing is added to the environment. The program is named as the first argument, as ever.
+  // As run_child does, which see; the environment is this process's own. The program is named as the first argument, as ever.
   ChildOutcome run(const ChildCommand& command, Monitor& monitor) const;
 
  private:

@@ -50,7 +50,7 @@ struct ModifierFormat {
   std::string flavor;           // as on the command line
   std::string ending = ".3mf";  // of the file
   // How a package says which volumes are none of the model; absent for a file that is not read as a model.
-  std::optional<VolumeList> volumes;
+  std::optional<VolumeList> volumes = {};
   // The bytes of a file of a mesh that these parts cover in order; the second may be of support blockers. The object is called as the model's part is if
   // `object_name` is empty.
   std::string (*file)(const Mesh& mesh, const ObjectPart& model, const ObjectPart& voids,

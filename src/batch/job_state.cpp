@@ -135,7 +135,7 @@ const char* name_of(Outcome outcome) {
 }
 
 ResultsFolder::ResultsFolder(fs::path results, const std::vector<PlannedJob>& jobs, Monitor& monitor, Use use)
-    : results_(std::move(results)), jobs_(jobs) {
+    : results_(std::move(results)), jobs_(jobs), use_(use) {
   make_folder(state_folder(results_));
   monitor.check_interrupted();
   lock_ = locked(state_folder(results_), use);
@@ -154,7 +154,7 @@ void ResultsFolder::remove_left_files() const {
     const fs::path record = record_path(results_, job);
     stems[record.parent_path()].insert(temporary_stem(record));
   }
-  stems[results_].insert("summary");
+  if (use_ == Use::alone) stems[results_].insert("summary");  // which no task of a cluster writes
   for (const auto& [folder, of_folder] : stems) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -219,6 +219,11 @@ void forget(const fs::path& results, const PlannedJob& job) {
   }
   fs::remove(thumbnail_path(results, job), ignored);
   fs::remove(record, ignored);
+}
+
+void remove_files(const PlannedJob& job) {
+  std::error_code ignored;
+  for (const fs::path& file : job.paths.all()) fs::remove(file, ignored);
 }
 
 void keep(const fs::path& results, const PlannedJob& job, const JobRecord& record) {

@@ -26,12 +26,16 @@ class ResultsFolder {
 
   const std::filesystem::path& path() const { return results_; }
 
+  // A descriptor that holds the folder for as long as any process has it.
+  int lock() const { return lock_; }
+
   // Of jobs that were killed.
   void remove_left_files() const;
 
  private:
   std::filesystem::path results_;
   const std::vector<PlannedJob>& jobs_;
+  Use use_;
   int lock_ = -1;
 };
 
@@ -48,6 +52,9 @@ std::optional<JobRecord> known_record(const std::filesystem::path& results, cons
 
 // Forgets a job that begins, and removes what an earlier run made for it: a refusal is to leave no result standing that says otherwise.
 void forget(const std::filesystem::path& results, const PlannedJob& job);
+
+// Removes what a job made, where that counts for nothing.
+void remove_files(const PlannedJob& job);
 
 // Written whole or not at all. Throws FailureError.
 void keep(const std::filesystem::path& results, const PlannedJob& job, const JobRecord& record);

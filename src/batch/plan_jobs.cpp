@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <fmt/format.h>
 #include <mutex>
 #include <optional>
@@ -150,7 +151,7 @@ void append_part(std::string& text, std::string_view part) {
   text += part;
 }
 
-std::string key_of(const PlannedJob& job, const PlanRequest& request, const Understood& meaning,
+std::string key_of(const PlannedJob& job, const PlanRequest& request, const std::vector<fs::path>& files,
                    SharedDigests& shared) {
   std::string text;
   append_part(text, request.version);
@@ -158,7 +159,7 @@ std::string key_of(const PlannedJob& job, const PlanRequest& request, const Unde
   append_part(text, job.paths.result.extension().string());
   for (const std::string& argument : job.arguments)
     if (has_effect(argument)) append_part(text, argument);
-  for (const fs::path& file : files_of(job.arguments, meaning)) append_part(text, shared.of(file));
+  for (const fs::path& file : files) append_part(text, shared.of(file));
   for (const bool is_made : {request.pictures, request.pages, request.plugs})
     append_part(text, is_made ? "1" : "0");
   return digest_of(text);
@@ -184,6 +185,23 @@ JobEstimate estimate_of_file(const fs::path& model, double bytes, bool has_pictu
   estimate.seconds =
       kSecondsAlways + kSecondsEach * estimate.triangles + (has_picture ? kSecondsOfPicture : 0);
   return estimate;
+}
+
+FileState state_of(const fs::path& file) {
+  const auto written = fs::last_write_time(file).time_since_epoch();
+  return {file, fs::file_size(file), std::chrono::duration_cast<std::chrono::nanoseconds>(written).count()};
+}
+
+std::optional<fs::path> changed_file(const PlannedJob& job) {
+  for (const FileState& planned : job.reads) {
+    try {
+      const FileState now = state_of(planned.path);
+      if (now.bytes != planned.bytes || now.written_ns != planned.written_ns) return planned.path;
+    } catch (const fs::filesystem_error&) {
+      return planned.path;
+    }
+  }
+  return std::nullopt;
 }
 
 std::vector<fs::path> JobPaths::all() const {
@@ -220,13 +238,17 @@ std::vector<PlannedJob> plan_jobs(const std::vector<FoundModel>& models, const P
     PlannedJob& job = jobs[i];
     if (!job.fault.empty()) return;
     try {
-      job.key = key_of(job, request, *meanings[i], shared);
-      job.model_bytes = static_cast<double>(fs::file_size(job.model));
+      // Before they are read for the key: what changes in between is found later.
+      std::vector<fs::path> files = files_of(job.arguments, *meanings[i]);
+      job.reads.push_back(state_of(job.model));
+      for (const fs::path& file : files) job.reads.push_back(state_of(file));
+      job.key = key_of(job, request, files, shared);
+      job.model_bytes = static_cast<double>(job.reads.front().bytes);
       job.estimate = estimate_of_file(job.model, job.model_bytes, request.pictures || request.pages);
     } catch (const Error& error) {
       set_fault(job, error);
     } catch (const fs::filesystem_error& error) {
-      set_fault(job, InputError(fmt::format("{}: {}", job.model.string(), error.code().message())));
+      set_fault(job, InputError(fmt::format("{}: {}", error.path1().string(), error.code().message())));
     }
   });
   monitor.check_interrupted();

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,14 @@ struct JobPaths {
   std::vector<std::filesystem::path> all() const;  // those that are not empty
 };
 
+// A file as it was when the batch was planned.
+struct FileState {
+  std::filesystem::path path = {};
+  std::uintmax_t bytes = 0;
+  std::int64_t written_ns = 0;  // in the time of the file system
+};
+FileState state_of(const std::filesystem::path& file);  // throws std::filesystem::filesystem_error
+
 struct PlannedJob {
   std::size_t number = 1;  // its place in the batch, from 1
   std::filesystem::path model = {};
@@ -47,6 +56,7 @@ struct PlannedJob {
   JobPaths paths = {};
   std::vector<std::string> arguments = {};  // of 'aerate hollow' but for model, files and threads
   std::string key = {};                     // of all that the result depends on: model, options, version
+  std::vector<FileState> reads = {};        // the files that the key is of
   double model_bytes = 0;
   JobEstimate estimate = {};
   std::string fault = {};  // why it cannot be begun, empty where it can
@@ -60,6 +70,9 @@ struct PlanRequest {
   bool pictures = false, pages = false, plugs = false;
   std::string version;  // of the program
 };
+
+// One that is not as it was when the job was planned, so that its key is not of what is there now; nothing if all are.
+std::optional<std::filesystem::path> changed_file(const PlannedJob& job);
 
 // A job for each model, in their order. What is wrong with one is its fault: a name that two share, an option that contradicts another, a
 // file that cannot be read. Reads every model once, on all threads. Throws InterruptedError, and UsageError for a template that is none.

@@ -31,6 +31,8 @@ constexpr int kThumbnailWidth = 200;
 
 Outcome outcome_of(int exit_code) {
   if (exit_code == 0) return Outcome::done;
+  if (exit_code == static_cast<int>(ExitCode::interrupted) || exit_code == kFirstSignal + SIGTERM)
+    return Outcome::not_done;
   if (exit_code > kFirstSignal) return Outcome::crashed;
   return exit_code == static_cast<int>(ExitCode::failure) ? Outcome::failed : Outcome::refused;
 }
@@ -53,6 +55,7 @@ std::string message_of(const ChildOutcome& outcome, const fs::path& model) {
   if (const std::string name = printable(model.string()) + ": "; said.starts_with(name))
     said.erase(0, name.size());
   if (!said.empty()) return said;
+  if (outcome_of(outcome.exit_code) == Outcome::not_done) return "its process was told to end";
   if (outcome.exit_code <= kFirstSignal)
     return fmt::format("it ended with exit status {}", outcome.exit_code);
   const int signal = outcome.exit_code - kFirstSignal;
@@ -97,9 +100,15 @@ JobRecord refused_before(const Error& error) {
           .message = error.what()};
 }
 
+// Its key is of files that are there no more: a record would call done what is not.
+JobRecord not_done_for(const fs::path& changed) {
+  return {.message = fmt::format("{}: was changed since the batch was planned", changed.string())};
+}
+
 // One job, from its start to its record.
 JobRecord run_job(const PlannedJob& job, const RunCommand& run, int threads, const fs::path& folder,
                   const ResultsFolder& results, Monitor& monitor) {
+  if (const auto changed = changed_file(job)) return not_done_for(*changed);
   forget(results.path(), job);
   JobRecord record;
   try {
@@ -109,16 +118,23 @@ JobRecord run_job(const PlannedJob& job, const RunCommand& run, int threads, con
       throw FailureError(
           fmt::format("{}: cannot be made: {}", job.paths.result.parent_path().string(), error.message()));
     const auto start = std::chrono::steady_clock::now();
-    const ChildOutcome outcome = run(command_of(job, threads, folder), monitor);
+    ChildCommand command = command_of(job, threads, folder);
+    command.held = results.lock();
+    const ChildOutcome outcome = run(command, monitor);
     record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     record.exit_code = outcome.exit_code;
     record.outcome = outcome_of(outcome.exit_code);
     if (outcome.exit_code > kFirstSignal) results.remove_left_files();
+    if (const auto changed = changed_file(job)) {
+      remove_files(job);
+      return not_done_for(*changed);
+    }
     if (record.outcome == Outcome::done) {
       read_report(job.paths.report, record);
     } else {
       record.message = message_of(outcome, job.model);
     }
+    if (record.outcome == Outcome::not_done) return record;
     write_text(job.paths.log, outcome.printed);
     if (record.outcome == Outcome::done) make_thumbnail(job, results.path());
     keep(results.path(), job, record);
@@ -254,8 +270,7 @@ void run_jobs(const std::vector<BatchRow*>& to_do, const RunCommand& run, const 
 }
 
 void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const ResultsFolder& results,
-              int threads, bool retry_failed, const std::function<void(const BatchRow&)>& ended,
-              Monitor& monitor) {
+              int threads, const std::function<void(const BatchRow&)>& ended, Monitor& monitor) {
   const PrivateFolder folder(monitor);
   std::vector<BatchRow*> in_order = rows;
   // Not std::ranges': clang 14 does not compile that.
@@ -264,15 +279,14 @@ void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const R
   for (BatchRow* const row : in_order) {
     monitor.check_interrupted();
     const PlannedJob& job = *row->job;
-    if (auto known = known_record(results.path(), job);
-        known && (known->outcome == Outcome::done || !retry_failed)) {
+    if (auto known = known_record(results.path(), job)) {
       row->record = *std::move(known);
       continue;
     }
     mark_begun(results.path(), job);
     row->record = run_job(job, run, threads, folder.path(), results, monitor);
     row->is_new = true;
-    mark_ended(results.path(), job);
+    if (row->record.outcome != Outcome::not_done) mark_ended(results.path(), job);
     ended(*row);
   }
 }

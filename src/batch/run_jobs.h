@@ -47,15 +47,13 @@ Shares shares_of(const RunBounds& bounds, std::size_t to_do);
 using RunCommand = std::function<ChildOutcome(const ChildCommand&, Monitor&)>;
 
 // Does them, each in a process of its own. Each row is filled in when its job has ended, and `ended` called with it, one at a
-// time and from any thread; it may look at all rows. Throws InterruptedError once all processes that were started have ended; rows of these are as if not begun.
+// time and from any thread; it may look at all rows. What is told to end stays to be done, as does what a file was changed of since it was planned. Throws InterruptedError once all processes that were started have ended; rows of these are as if not begun.
 void run_jobs(const std::vector<BatchRow*>& to_do, const RunCommand& run, const ResultsFolder& results,
               const RunBounds& bounds, const std::function<void(const BatchRow&)>& ended, Monitor& monitor);
 
 // The same for a task of a cluster: one after the other, and a job that cut this task off before as the last one. What another task has done is not done again.
 //   threads: of each
-//   retry_failed: but what has failed is
 void run_task(const std::vector<BatchRow*>& rows, const RunCommand& run, const ResultsFolder& results,
-              int threads, bool retry_failed, const std::function<void(const BatchRow&)>& ended,
-              Monitor& monitor);
+              int threads, const std::function<void(const BatchRow&)>& ended, Monitor& monitor);
 
 }  // namespace aerate::batch

@@ -1,8 +1,10 @@
 #include "batch/slurm.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <string_view>
 
@@ -26,6 +28,11 @@ std::string said_by(std::vector<std::string> arguments, Monitor& monitor) {
   ChildCommand command;
   command.arguments = std::move(arguments);
   command.folder = folder.path();
+  // Which would choose among tasks, or change what is printed of them.
+  command.without = {"SQUEUE_*", "SCANCEL_*", "SBATCH_WAIT", "SBATCH_CLUSTERS"};
+  // All commands are for the one that sbatch is for.
+  if (const char* const clusters = std::getenv("SBATCH_CLUSTERS"))
+    command.environment = {{"SLURM_CLUSTERS", clusters}};
   const std::string& name = command.arguments.front();
   ChildOutcome outcome;
   try {
@@ -59,6 +66,13 @@ std::string mebibytes(double bytes) {
   return fmt::format("{:.0f}M", std::ceil(bytes / (1024.0 * 1024.0)));
 }
 
+// As Slurm takes a name for which it puts numbers in place of patterns.
+std::string without_patterns(const fs::path& path) {
+  std::string text;
+  for (const char byte : path.string()) text += byte == '%' ? "%%" : std::string(1, byte);
+  return text;
+}
+
 // The identity that 'sbatch --parsable' prints, without the cluster's name; warnings may go before it.
 std::string identity_in(std::string_view printed) {
   std::string identity;
@@ -81,6 +95,26 @@ std::size_t TasksUnderWay::waiting_in_all() const {
   return count;
 }
 
+void require_usable(const SlurmRequest& request, const fs::path& results) {
+  const std::string folder = fs::absolute(results).string();
+  if (folder.find('\\') != std::string::npos)
+    throw UsageError(
+        fmt::format("{}: Slurm takes a backslash in the name of a folder for a sign of its own", folder),
+        "give another folder with -o");
+  constexpr std::array<std::string_view, 6> kRefused{"-W", "--wait", "-M", "--cluster", "--test", "--wrap"};
+  for (const std::string& option : request.options) {
+    if (!option.starts_with('-') || option == "-" || option == "--")
+      throw UsageError(fmt::format("--sbatch-option: '{}' is no option of sbatch", printable(option)),
+                       "write an option and its value as one, as in --sbatch-option=--qos=low");
+    for (const std::string_view refused : kRefused)
+      if (option.starts_with(refused) && !option.starts_with("--wait-all-nodes"))
+        throw UsageError(
+            fmt::format("--sbatch-option: with '{}' the batch would not know of its tasks",
+                        printable(option)),
+            "--wait of the batch waits; for another cluster set SLURM_CLUSTERS for all its commands");
+  }
+}
+
 std::size_t most_tasks_of_array(Monitor& monitor) {
   std::size_t most = kUsualMostTasks;
   for_each_line(said_by({"scontrol", "show", "config"}, monitor), [&](std::string_view line) {
@@ -100,26 +134,23 @@ std::string submit_array(const Submission& submission, std::size_t array, const 
   const TaskArray& tasks = submission.arrays.at(array);
   std::string range = fmt::format("0-{}", tasks.tasks.size() - 1);
   if (request.most_tasks_at_a_time > 0) range += fmt::format("%{}", request.most_tasks_at_a_time);
-  // Its own name is the folder's there, so that no letter of it is taken for a pattern.
-  const fs::path folder = fs::absolute(submissions_folder(results));
   std::vector<std::string> command{"sbatch",
-                                   "--parsable",
-                                   "--job-name=" + submission.name,
-                                   "--array=" + range,
                                    "--ntasks=1",
                                    fmt::format("--cpus-per-task={}", submission.threads),
                                    "--mem=" + mebibytes(tasks.memory_bytes),
                                    "--time=" + minutes(tasks.seconds),
-                                   "--requeue",
-                                   "--open-mode=append",
-                                   "--chdir=" + folder.string(),
-                                   "--output=%A-%a.txt"};
+                                   "--requeue"};
   if (!request.partition.empty()) command.push_back("--partition=" + request.partition);
   if (!request.account.empty()) command.push_back("--account=" + request.account);
   command.insert(command.end(), request.options.begin(), request.options.end());
-  command.push_back(fmt::format("--wrap=exec {} batch-task {} {}", shell_word(program.string()),
-                                shell_word(fs::absolute(submission_path(results, submission.name)).string()),
-                                array));
+  // By which the batch knows its tasks: last, so that it holds. An option without its value takes the first one for it, so that stands there twice.
+  const std::string log = without_patterns(fs::absolute(submissions_folder(results))) + "/%A-%a.txt";
+  const fs::path file = fs::absolute(submission_path(results, submission.name));
+  command.insert(command.end(),
+                 {"--parsable", "--parsable", "--job-name=" + submission.name, "--array=" + range,
+                  "--open-mode=append", "--chdir=/", "--output=" + log, "--error=" + log,
+                  fmt::format("--wrap=exec {} batch-task {} {}", shell_word(program.string()),
+                              shell_word(file.string()), array)});
   return identity_in(said_by(std::move(command), monitor));
 }
 
@@ -132,7 +163,8 @@ TasksUnderWay tasks_under_way(const Submission& submission, Monitor& monitor) {
     line = without_blanks(line);
     const std::string_view state = line.substr(0, line.find(' '));
     constexpr std::string_view kWaiting = "PENDING";
-    if (state.starts_with("squeue:") || state.empty()) return true;  // a warning
+    // Warnings, and the name of the cluster where SLURM_CLUSTERS is set.
+    if (state.ends_with(':') || state.empty()) return true;
     if (state == kWaiting)
       ++under_way.waiting[std::string(without_blanks(line.substr(state.size())))];
     else

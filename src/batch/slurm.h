@@ -16,7 +16,7 @@ namespace aerate::batch {
 // What is passed on to sbatch as it stands.
 struct SlurmRequest {
   std::string partition, account;    // empty: the cluster's own
-  std::vector<std::string> options;  // after all others, "--qos=low"
+  std::vector<std::string> options;  // "--qos=low"
   int most_tasks_at_a_time = 0;      // 0: as many as there is room for
 };
 
@@ -29,10 +29,13 @@ struct TasksUnderWay {
   bool none() const { return running == 0 && waiting.empty(); }
 };
 
+// Throws UsageError for options with which the batch would not know of its tasks, and for a folder that Slurm cannot write to.
+void require_usable(const SlurmRequest& request, const std::filesystem::path& results);
+
 // How many tasks an array may have.
 std::size_t most_tasks_of_array(Monitor& monitor);
 
-// Submits one array of a submission that has been kept; its identity in the cluster.
+// Submits one array of a submission that has been kept; its identity in the cluster. What is asked for goes before what the batch itself decides by estimates.
 //   program: this one, by the name that it has on the nodes
 std::string submit_array(const Submission& submission, std::size_t array,
                          const std::filesystem::path& results, const std::filesystem::path& program,

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* kSchema = "aerate.batch.submission";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr const char *kLast = "last", *kOver = "over";
 constexpr const char* kEnding = ".cbor";  // names of files are bytes, which JSON's text has no place for
 
@@ -28,6 +28,8 @@ Json json_of(const PlannedJob& job, const fs::path& results) {
     return path.empty() ? std::string() : path.lexically_relative(results).string();
   };
   const JobPaths& paths = job.paths;
+  Json reads = Json::array();
+  for (const FileState& file : job.reads) reads.push_back({file.path.string(), file.bytes, file.written_ns});
   return {{"number", job.number},
           {"model", job.model.string()},
           {"origin", job.origin},
@@ -37,6 +39,7 @@ Json json_of(const PlannedJob& job, const fs::path& results) {
             below(paths.page), below(paths.plugs)}},
           {"arguments", job.arguments},
           {"key", job.key},
+          {"reads", std::move(reads)},
           {"model_bytes", job.model_bytes},
           {"estimate", {job.estimate.triangles, job.estimate.memory_bytes, job.estimate.seconds}},
           {"fault", job.fault},
@@ -50,6 +53,8 @@ PlannedJob job_of(const Json& json, const fs::path& results) {
     return name.empty() ? fs::path() : results / name;
   };
   const Json &paths = json.at("paths"), &estimate = json.at("estimate");
+  std::vector<FileState> reads;
+  for (const Json& file : json.at("reads")) reads.push_back({path(file.at(0)), file.at(1), file.at(2)});
   return {.number = json.at("number"),
           .model = path(json.at("model")),
           .origin = json.at("origin"),
@@ -58,6 +63,7 @@ PlannedJob job_of(const Json& json, const fs::path& results) {
                     below(paths.at(4)), below(paths.at(5))},
           .arguments = json.at("arguments").get<std::vector<std::string>>(),
           .key = json.at("key"),
+          .reads = std::move(reads),
           .model_bytes = json.at("model_bytes"),
           .estimate = {estimate.at(0), estimate.at(1), estimate.at(2)},
           .fault = json.at("fault"),
@@ -122,7 +128,6 @@ void keep_submission(const fs::path& results, const Submission& submission) {
                   {"version", submission.version},
                   {"working_folder", submission.working_folder.string()},
                   {"threads", submission.threads},
-                  {"retries_failed", submission.retries_failed},
                   {"plan", std::move(plan)},
                   {"arrays", std::move(arrays)}};
   const std::vector<std::uint8_t> bytes = Json::to_cbor(json);
@@ -140,8 +145,7 @@ Submission read_submission(const fs::path& file) {
     Submission submission{.name = json.at("name"),
                           .version = json.at("version"),
                           .working_folder = json.at("working_folder").get<std::string>(),
-                          .threads = json.at("threads"),
-                          .retries_failed = json.at("retries_failed")};
+                          .threads = json.at("threads")};
     for (const Json& job : json.at("plan")) submission.plan.push_back(job_of(job, results));
     for (const Json& array : json.at("arrays"))
       submission.arrays.push_back(array_of(array, submission.plan.size()));

@@ -16,7 +16,6 @@ struct Submission {
   std::string version;                        // of the program
   std::filesystem::path working_folder = {};  // that names of models are relative to
   int threads = 1;                            // of each model
-  bool retries_failed = false;                // those that are known to have failed are in its tasks
   std::vector<PlannedJob> plan = {};          // all of the batch, done or not
   std::vector<TaskArray> arrays = {};
   bool is_over = false;  // it has been seen that none of its tasks is under way

@@ -231,7 +231,8 @@ std::string summary_html(std::span<const BatchRow> rows, const fs::path& results
   if (counts.not_done > 0)
     html += fmt::format("<p>{} could not be, for the reasons below.\n", counts.not_done);
   if (counts.yet_to_do > 0)
-    html += fmt::format("<p>{} are yet to be done: the same command goes on.\n", counts.yet_to_do);
+    html += fmt::format("<p>{} {} yet to be done: the same command goes on.\n", counts.yet_to_do,
+                        counts.yet_to_do == 1 ? "is" : "are");
   html +=
       "<table><thead><tr><th>Picture<th>Result<th>Voids<th>Removed<th>Share<th>Mass<th>Cost<th>Filament"
       "<th>Time</thead>\n<tbody>\n";

@@ -207,8 +207,8 @@ struct BatchCommand {
     command
         .add_option(
             "--sbatch-option", sbatch_options,
-            "One more option for 'sbatch' (--sbatch-option=--qos=low), which goes before the batch's own; "
-            "may be repeated")
+            "One more option for 'sbatch' (--sbatch-option=--qos=low), which holds before what the batch "
+            "would ask for; may be repeated")
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)

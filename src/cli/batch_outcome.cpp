@@ -70,10 +70,10 @@ void finish_batch(std::span<const BatchRow> rows, const std::string& results, st
   if (is_all) return;
   const ExitCode code = counts.done > 0 ? kSomeNotDone : kNoneDone;
   if (counts.yet_to_do > 0)
-    throw Error(
-        code,
-        fmt::format("{} of {} are yet to be done, {} could not be", counts.yet_to_do, all, counts.not_done),
-        fmt::format("{} has the reasons; the same command goes on from there", page));
+    throw Error(code,
+                fmt::format("{} of {} {} yet to be done, {} could not be", counts.yet_to_do, all,
+                            counts.yet_to_do == 1 ? "is" : "are", counts.not_done),
+                fmt::format("{} has the reasons; the same command goes on from there", page));
   throw Error(code, fmt::format("{} of {} could not be hollowed", counts.not_done, all),
               fmt::format("{} has the reasons; they are tried again when something changed, or with "
                           "--retry-failed",

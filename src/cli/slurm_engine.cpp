@@ -1,6 +1,7 @@
 #include "cli/slurm_engine.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
@@ -61,19 +62,50 @@ std::string under_way_in_words(const TasksUnderWay& tasks) {
   return words;
 }
 
-// Why a task was ended, where what it wrote says so.
-std::string why_ended(const fs::path& log) {
+// Why a job was not done, where what its task wrote says so.
+std::string why_not_done(const batch::PlannedJob& job, const fs::path& log) {
   std::error_code ignored;
   if (!fs::is_regular_file(log, ignored)) return "its task was not begun";
-  std::string why;
+  const std::string begin = told({.job = &job});
+  std::string why, why_ended;
   for_each_line(read_text(log), [&](std::string_view line) {
     constexpr std::string_view kError = "error:";
+    if (line.starts_with(begin)) why = line.substr(begin.size());
     if (const std::size_t at = line.find(kError); at != std::string_view::npos)
-      why = without_blanks(line.substr(at + kError.size()));
+      why_ended = without_blanks(line.substr(at + kError.size()));
     return true;
   });
-  return why.empty() ? "its task was ended" : "its task was ended: " + why;
+  if (!why.empty()) return why;
+  return why_ended.empty() ? "its task was ended" : "its task was ended: " + why_ended;
 }
+
+// Those for which tasks wait that will be begun.
+bool is_usual(const std::string& reason) {
+  constexpr std::array<std::string_view, 5> kUsual{"", "None", "Priority", "Resources", "JobArrayTaskLimit"};
+  return std::ranges::find(kUsual, reason) != kUsual.end();
+}
+
+// What is known of jobs that are tried again is forgotten, and known again where they could not be.
+class RetriedJobs {
+ public:
+  RetriedJobs(const std::vector<BatchRow*>& to_do, const fs::path& results) : results_(results) {
+    for (const BatchRow* const row : to_do) {
+      std::optional<batch::JobRecord> known = batch::known_record(results_, *row->job);
+      if (!known) continue;
+      records_.emplace_back(row->job, *std::move(known));
+      batch::forget(results_, *row->job);
+    }
+  }
+
+  void restore() const {
+    for (const auto& [job, record] : records_)
+      if (!batch::known_record(results_, *job)) batch::keep(results_, *job, record);
+  }
+
+ private:
+  const fs::path& results_;
+  std::vector<std::pair<const batch::PlannedJob*, batch::JobRecord>> records_;
+};
 
 // Opens the folders in which other machines have written: a network file system may say for a minute that a file is not there, but looks again then.
 void look_anew(const Submission& submission, const fs::path& results) {
@@ -144,6 +176,7 @@ std::string SlurmEngine::in_words(const std::vector<BatchRow*>& to_do) const {
 
 bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_failed,
                          const fs::path& program) {
+  batch::require_usable(options_.request, results_);
   const batch::ResultsFolder folder(results_, plan, monitor_);
   require_no_cluster_at_work(results_, monitor_);  // since it was asked for the last time
   std::vector<BatchRow> rows = batch::known_rows(plan, results_, retry_failed);
@@ -160,15 +193,32 @@ bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_
                         .version = kBatchVersion,
                         .working_folder = fs::current_path(),
                         .threads = options_.threads,
-                        .retries_failed = retry_failed,
                         .plan = plan,
                         .arrays = batch::task_arrays(to_do, cut_off,
                                                      {.models = options_.models_of_task,
                                                       .most_tasks = batch::most_tasks_of_array(monitor_)})};
+  const fs::path results = results_;
+  const RetriedJobs retried(to_do, results);
+  try {
+    hand_over(submission, program);
+  } catch (const FailureError&) {
+    retried.restore();
+    throw;
+  }
+  std::size_t tasks = 0;
+  for (const TaskArray& array : submission.arrays) tasks += array.tasks.size();
+  try_to_summarise(rows, results_, options_.is_quiet);
+  if (!options_.is_quiet)
+    std::cout << fmt::format("{} handed over in {}: {}\n", counted(to_do.size(), "model", "models"),
+                             counted(tasks, "task", "tasks"), job_in_words(submission))
+              << std::flush;
+  return true;
+}
+
+void SlurmEngine::hand_over(Submission& submission, const fs::path& program) const {
   batch::clear_submissions(results_);
   // Known before it is handed over: what is killed in between finds it by its name.
   batch::keep_submission(results_, submission);
-  std::size_t tasks = 0;
   for (std::size_t i = 0; i < submission.arrays.size(); ++i) {
     try {
       submission.arrays[i].id =
@@ -177,15 +227,8 @@ bool SlurmEngine::submit(const std::vector<batch::PlannedJob>& plan, bool retry_
       take_back(submission);
       throw;
     }
-    tasks += submission.arrays[i].tasks.size();
     batch::keep_submission(results_, submission);
   }
-  try_to_summarise(rows, results_, options_.is_quiet);
-  if (!options_.is_quiet)
-    std::cout << fmt::format("{} handed over in {}: {}\n", counted(to_do.size(), "model", "models"),
-                             counted(tasks, "task", "tasks"), job_in_words(submission))
-              << std::flush;
-  return true;
 }
 
 // Of which Slurm may have taken a part, whatever it said. It stays known where that cannot be found out.
@@ -226,9 +269,36 @@ std::vector<BatchRow> SlurmEngine::rows_of(const Submission& submission, bool is
       for (const std::size_t job : array.tasks[task].jobs) {
         BatchRow& row = rows[job];
         row.is_new = row.record.outcome != Outcome::not_done;
-        if (is_over && !row.is_new) row.record.message = why_ended(batch::task_log(results_, array, task));
+        if (is_over && !row.is_new)
+          row.record.message = why_not_done(*row.job, batch::task_log(results_, array, task));
       }
   return rows;
+}
+
+// A controller that is begun anew says nothing for a while.
+TasksUnderWay SlurmEngine::patiently_asked(const Submission& submission) const {
+  constexpr std::chrono::seconds kLongest(120), kPause(2);
+  const auto start = std::chrono::steady_clock::now();
+  for (bool is_told = options_.is_quiet;; is_told = true) {
+    try {
+      return batch::tasks_under_way(submission, monitor_);
+    } catch (const FailureError& error) {
+      if (std::chrono::steady_clock::now() - start > kLongest) throw;
+      if (!is_told) print_note(fmt::format("{}; asked again", error.what()));
+    }
+    sleep(kPause, monitor_);
+  }
+}
+
+// Where nothing runs, and what waits may wait for ever.
+void SlurmEngine::tell_what_waits(const Submission& submission, const TasksUnderWay& tasks,
+                                  std::set<std::string>& told) const {
+  if (options_.is_quiet || tasks.running > 0) return;
+  bool is_new = false;
+  for (const auto& [reason, count] : tasks.waiting)
+    if (!is_usual(reason)) is_new = told.insert(reason).second || is_new;
+  if (is_new)
+    std::cout << fmt::format("{}: {}\n", job_in_words(submission), under_way_in_words(tasks)) << std::flush;
 }
 
 void SlurmEngine::follow() {
@@ -240,9 +310,12 @@ void SlurmEngine::follow() {
     for (const batch::ArrayTask& task : array.tasks)
       handed_over.insert(handed_over.end(), task.jobs.begin(), task.jobs.end());
   std::size_t ended = 0;
+  std::set<std::string> reasons_told;
   for (std::chrono::milliseconds pause = kFirst;; pause = std::min(pause * 3 / 2, kLongest)) {
     // Asked first: what ends between the two is told.
-    const bool is_over = batch::tasks_under_way(followed, monitor_).none();
+    const TasksUnderWay tasks = patiently_asked(followed);
+    const bool is_over = tasks.none();
+    tell_what_waits(followed, tasks, reasons_told);
     const std::vector<BatchRow> rows = rows_of(followed, is_over);
     for (const std::size_t job : handed_over) {
       if (is_told[job] || !rows[job].is_new) continue;
@@ -358,7 +431,7 @@ void run_cluster_task(const fs::path& submission_file, std::size_t array, Monito
     return commands.run(command, of_job);
   };
   batch::run_task(
-      in_task, run, folder, submission.threads, submission.retries_failed,
+      in_task, run, folder, submission.threads,
       [](const BatchRow& row) { std::cout << told(row) << "\n"
                                           << std::flush; }, monitor);
 }

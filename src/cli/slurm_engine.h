@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ class SlurmEngine {
   std::string in_words(const std::vector<batch::BatchRow*>& to_do) const;
 
   // Hands over what is yet to be done, and returns at once; with nothing to do it ends the batch as `collect` does. Throws FailureError if an
-  // earlier batch is under way in this folder, or the cluster refuses: nothing is in its hands then.
+  // earlier batch is under way in this folder, or the cluster refuses: nothing is in its hands then. Throws UsageError for options that cannot be given.
   // Whether something was.
   bool submit(const std::vector<batch::PlannedJob>& plan, bool retry_failed,
               const std::filesystem::path& program);
@@ -45,8 +46,12 @@ class SlurmEngine {
 
  private:
   batch::Submission submission() const;
+  void hand_over(batch::Submission& submission, const std::filesystem::path& program) const;
   void take_back(const batch::Submission& submission) const;
   bool wait_for_end(const batch::Submission& submission) const;
+  batch::TasksUnderWay patiently_asked(const batch::Submission& submission) const;
+  void tell_what_waits(const batch::Submission& submission, const batch::TasksUnderWay& tasks,
+                       std::set<std::string>& told) const;
   batch::TasksUnderWay end_submission(const batch::Submission& submission) const;
   std::vector<batch::BatchRow> rows_of(const batch::Submission& submission, bool is_over) const;
 

@@ -89,6 +89,13 @@ inline std::vector<pid_t> at_work_for(const fs::path& folder) {
   return found;
 }
 
+inline pid_t parent_of(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("PPid:")) return std::stoi(line.substr(5));
+  return 0;
+}
+
 // Until something is so; fails after a minute.
 inline void wait_until(const std::function<bool()>& is_so) {
   for (int i = 0; i < 6000 && !is_so(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -99,6 +99,41 @@ TEST(Batch, AJobThatIsKilledIsARowThatIsTriedAgainOnlyWhenThatIsAskedFor) {
   EXPECT_TRUE(contains(result.out, "2 of 2 models are done, 1 in this run"));
 }
 
+// Takes some seconds, so that there is something to disturb.
+const std::vector<std::string> kSlow{"--tolerance", "0.01", "--max-voids", "500"};
+
+TEST(Batch, AJobThatIsToldToEndIsStillToBeDone) {
+  const Batch batch;
+  fs::copy(sample("bunny.stl"), batch.models() / "slow.stl");
+  std::vector<std::string> slow = kSlow;
+  slow.emplace_back(batch.models());
+  Process process(batch.command(slow));
+  wait_until([&] { return !temporary_files(batch.results()).empty(); });
+  kill(process_that_made(temporary_files(batch.results()).front()), SIGTERM);
+  const ProcessResult result = process.wait();
+  EXPECT_EQ(result.exit_code, kNoneDone);
+  EXPECT_TRUE(contains(result.err, "1 of 1 model is yet to be done, 0 could not be")) << result.err;
+  EXPECT_TRUE(contains(result.out, "not done: ")) << result.out;
+  EXPECT_EQ(batch.row("slow.stl").at("outcome"), "not done");
+  EXPECT_EQ(batch.run({batch.models()}).exit_code, 0);
+}
+
+TEST(Batch, AModelThatChangesMeanwhileIsStillToBeDone) {
+  const Batch batch;
+  fs::copy(sample("bunny.stl"), batch.models() / "a.stl");
+  std::vector<std::string> slow = kSlow;
+  slow.emplace_back(batch.models());
+  Process process(batch.command(slow));
+  wait_until([&] { return !temporary_files(batch.results()).empty(); });
+  batch.block("a.stl");
+  EXPECT_EQ(process.wait().exit_code, kNoneDone);
+  EXPECT_TRUE(contains(batch.row("a.stl").at("message").get<std::string>(), "was changed since"));
+  EXPECT_FALSE(fs::exists(batch.results() / "a-hollow.stl"));
+  // Of what is there now.
+  EXPECT_EQ(batch.run({batch.models()}).exit_code, 0);
+  EXPECT_EQ(batch.result("a-hollow.stl"), batch.hollowed(batch.models() / "a.stl"));
+}
+
 TEST(Batch, OnlyWhatIsMissingOrChangedIsDoneAgain) {
   const Batch batch;
   batch.block("a.stl");
@@ -385,6 +420,29 @@ TEST(Batch, TwoAtWorkInOneFolderAreOneTooMany) {
   EXPECT_TRUE(contains(second.err, "another batch is at work"));
   close(held);
   EXPECT_EQ(batch.run({batch.models()}).exit_code, 0);
+}
+
+// What ends them is slow here.
+TEST(Batch, ABatchWaitsForTheJobsOfOneThatWasKilled) {
+  const Batch batch;
+  fs::copy(sample("bunny.stl"), batch.models() / "slow.stl");
+  std::vector<std::string> slow = kSlow;
+  slow.emplace_back(batch.models());
+  Process process(batch.command(slow));
+  wait_until([&] { return !temporary_files(batch.results()).empty(); });
+  const pid_t job = process_that_made(temporary_files(batch.results()).front());
+  const pid_t keeper = parent_of(job);
+  kill(keeper, SIGSTOP);
+  process.send(SIGKILL);
+  process.wait();
+  const ProcessResult refused = batch.run({batch.models()});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_TRUE(contains(refused.err, "another batch is at work"));
+  EXPECT_EQ(kill(job, 0), 0);
+  kill(keeper, SIGCONT);
+  EXPECT_EQ(batch.run({batch.models()}).exit_code, 0);
+  EXPECT_NE(kill(job, 0), 0);
+  EXPECT_EQ(temporary_files(batch.results()), std::vector<std::string>{});
 }
 
 // Killed at moments that a seed chooses, and started again: nothing is lost, and nothing done twice but what was under way.

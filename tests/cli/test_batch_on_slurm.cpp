@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -51,15 +52,22 @@ class Cluster {
   ProcessResult begun_;
 };
 
+// Which are found before others of their names.
+Environment with_programs_in(const fs::path& folder) {
+  return {{"PATH", folder.string().append(":").append(std::getenv("PATH"))}};
+}
+
 class BatchOnSlurm : public testing::Test {
  protected:
   void SetUp() override {
     if (!cluster_.missing().empty()) GTEST_SKIP() << cluster_.missing();
   }
 
-  ProcessResult submit(std::vector<std::string> arguments) const {
+  ProcessResult submit(std::vector<std::string> arguments, const Environment& more = {}) const {
     arguments.insert(arguments.begin(), {batch_.models(), "--engine", "slurm"});
-    return cluster_.run(batch_.command(arguments));
+    Environment environment = cluster_.environment();
+    environment.insert(environment.end(), more.begin(), more.end());
+    return test::run(batch_.command(arguments), environment);
   }
   ProcessResult ask(const std::string& what) const {
     return cluster_.run({AERATE_EXECUTABLE, "batch", "-o", batch_.results(), what});
@@ -82,6 +90,10 @@ class BatchOnSlurm : public testing::Test {
     std::istringstream lines(waiting.out);
     for (std::string task; lines >> task;)
       cluster_.run({"scontrol", "update", "JobId=" + task, "StartTime=now"});
+  }
+
+  void set_partition(const std::string& state) const {
+    ASSERT_EQ(cluster_.run({"scontrol", "update", "PartitionName=work", "State=" + state}).exit_code, 0);
   }
 
   Batch batch_;
@@ -224,14 +236,143 @@ TEST_F(BatchOnSlurm, WhatTheClusterRefusesIsToldInItsWordsAndNothingIsInItsHands
 
 TEST_F(BatchOnSlurm, TasksThatWaitAreToldWithTheReason) {
   batch_.block("a.stl");
-  ASSERT_EQ(cluster_.run({"scontrol", "update", "PartitionName=work", "State=DOWN"}).exit_code, 0);
+  set_partition("DOWN");
   ASSERT_EQ(submit({"--partition", "work", "--sbatch-option=--comment=mine"}).exit_code, 0);
   ProcessResult status;
   wait_until([&] { return contains((status = ask("--status")).out, "PartitionDown"); });
   EXPECT_TRUE(contains(status.out, "0 tasks running, 1 waiting (PartitionDown)")) << status.out;
   EXPECT_EQ(ask("--collect").exit_code, kNoneDone);
-  ASSERT_EQ(cluster_.run({"scontrol", "update", "PartitionName=work", "State=UP"}).exit_code, 0);
+  set_partition("UP");
   EXPECT_EQ(submit({"--wait"}).exit_code, 0);
+}
+
+// Which waits until its partition is up.
+TEST_F(BatchOnSlurm, AModelThatChangesWhileItsTaskWaitsIsStillToBeDone) {
+  batch_.block("a.stl");
+  batch_.block("b.stl", 22);
+  set_partition("DOWN");
+  ASSERT_EQ(submit({"--chunk", "2"}).exit_code, 0);
+  batch_.block("a.stl", 25);
+  set_partition("UP");
+  // The one that changed is handed over again, with its own reason in between.
+  wait_until([&] { return contains(ask("--status").out, "ended"); });
+  ProcessResult result = ask("--collect");
+  EXPECT_EQ(result.exit_code, kSomeNotDone);
+  EXPECT_TRUE(contains(batch_.row("a.stl").at("message").get<std::string>(), "a.stl: was changed since"))
+      << batch_.row("a.stl");
+  EXPECT_FALSE(fs::exists(batch_.results() / "a-hollow.stl"));
+  result = submit({"--wait"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(batch_.result("a-hollow.stl"), batch_.hollowed(batch_.models() / "a.stl"));
+}
+
+TEST_F(BatchOnSlurm, NamesMayBeRelativeAndHoldPatternsOfSlurm) {
+  const fs::path folder = batch_.folder() / "at %A %% 'work'";
+  fs::create_directories(folder / "in");
+  fs::copy(batch_.block("a.stl"), folder / "in/a.stl");
+  std::ofstream(folder / "own.json") << R"({"base": "sls"})";
+  const std::vector<std::string> command{
+      "env",      "--chdir",     folder,   AERATE_EXECUTABLE, "batch", "in",
+      "-o",       "out %j %A",   "--wait", "--engine",        "slurm", "--process",
+      "own.json", "--max-voids", "2",      "--tolerance",     "0.3"};
+  const ProcessResult result = cluster_.run(command);
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_TRUE(fs::exists(folder / "out %j %A/a-hollow.stl"));
+  std::size_t logs = 0;
+  for (const std::string& name : entries_of(folder / "out %j %A/.aerate-batch/slurm"))
+    logs += name.ends_with("-0.txt");
+  EXPECT_EQ(logs, 1U);
+}
+
+// Of sbatch's own options and variables, whatever they are.
+TEST_F(BatchOnSlurm, NothingHidesTasksFromTheBatch) {
+  const fs::path elsewhere = batch_.folder() / "elsewhere";
+  fs::create_directory(elsewhere);
+  const Environment variables{{"SQUEUE_STATES", "COMPLETED"},
+                              {"SQUEUE_FORMAT", "%i"},
+                              {"SQUEUE_USERS", "nobody"},
+                              {"SBATCH_WAIT", "1"},
+                              {"SCANCEL_STATE", "COMPLETING"}};
+  batch_.block("a.stl");
+  set_partition("DOWN");
+  ASSERT_EQ(submit({"--sbatch-option=--job-name=mine", "--sbatch-option=--array=5-9",
+                    "--sbatch-option=--output=/nowhere/%j", "--sbatch-option=--error=e",
+                    "--sbatch-option=--chdir=" + elsewhere.string(), "--sbatch-option=--comment"},
+                   variables)
+                .exit_code,
+            0);
+  const ProcessResult second = submit({}, variables);
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_TRUE(contains(second.err, "1 waiting")) << second.err;
+  set_partition("UP");
+  EXPECT_EQ(submit({"--wait"}, variables).exit_code, 0);
+  EXPECT_EQ(entries_of(elsewhere), std::vector<std::string>{});
+  for (const char* option :
+       {"--wait", "-W", "--clusters=other", "-Mother", "--test-only", "--wrap=true", "word"}) {
+    const ProcessResult refused = submit({"--sbatch-option", option});
+    EXPECT_EQ(refused.exit_code, kUsage) << option;
+    EXPECT_TRUE(contains(refused.err, "--sbatch-option: ")) << refused.err;
+  }
+}
+
+TEST_F(BatchOnSlurm, WhoWaitsIsToldWhyNothingBegins) {
+  batch_.block("a.stl");
+  set_partition("DOWN");
+  std::vector<std::string> arguments{batch_.models(), "--engine", "slurm", "--wait"};
+  Process waiting(batch_.command(arguments), cluster_.environment());
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  set_partition("UP");
+  const ProcessResult result = waiting.wait();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "0 tasks running, 1 waiting (PartitionDown)")) << result.out;
+}
+
+// As while its controller is begun anew.
+TEST_F(BatchOnSlurm, WhoWaitsAsksAgainWhereSlurmDoesNotAnswer) {
+  batch_.block("a.stl");
+  set_partition("DOWN");
+  ASSERT_EQ(submit({}).exit_code, 0);
+  const fs::path programs = batch_.folder() / "programs";
+  fs::create_directory(programs);
+  std::ofstream(programs / "squeue")
+      << "#!/bin/sh\nif mkdir " << programs.string()
+      << "/asked 2>/dev/null; then echo 'squeue: error: Unable to contact'; exit 1; fi\n"
+      << "exec /usr/bin/squeue \"$@\"\n";
+  fs::permissions(programs / "squeue", fs::perms::owner_all);
+  set_partition("UP");
+  const ProcessResult result = submit({"--wait"}, with_programs_in(programs));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.err, "Unable to contact; asked again")) << result.err;
+}
+
+TEST_F(BatchOnSlurm, WhatIsTriedAgainIsToldByItsNewOutcome) {
+  batch_.file("models/a.stl", "no model");
+  ASSERT_EQ(submit({"--wait"}).exit_code, kNoneDone);
+  set_partition("DOWN");
+  ASSERT_EQ(submit({"--retry-failed"}).exit_code, 0);
+  EXPECT_TRUE(contains(ask("--status").out, "0 of 1 model done, 0 could not be, 1 yet to do"));
+  set_partition("UP");
+  const ProcessResult result = submit({"--wait", "--retry-failed"});
+  EXPECT_EQ(result.exit_code, kNoneDone);
+  EXPECT_TRUE(contains(result.out, "[1/1] refused: ")) << result.out;
+  // Where it is not handed over, what is known of it stays.
+  EXPECT_EQ(submit({"--retry-failed", "--partition", "nowhere"}).exit_code, 1);
+  EXPECT_TRUE(contains(submit({}).out, "0 in this run"));
+}
+
+TEST_F(BatchOnSlurm, AHandingOverThatFailsHalfWayIsTakenBack) {
+  batch_.block("a.stl");
+  set_partition("DOWN");
+  const fs::path programs = batch_.folder() / "programs";
+  fs::create_directory(programs);
+  std::ofstream(programs / "sbatch")
+      << "#!/bin/sh\n/usr/bin/sbatch \"$@\"; echo 'sbatch: error: timed out'; exit 1\n";
+  fs::permissions(programs / "sbatch", fs::perms::owner_all);
+  const ProcessResult result = submit({}, with_programs_in(programs));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(contains(result.err, "timed out")) << result.err;
+  EXPECT_EQ(cluster_.run({"squeue", "--noheader"}).out, "");
+  EXPECT_EQ(ask("--status").exit_code, kUsage);  // nothing is known of it
 }
 
 TEST(BatchWithoutSlurm, AClusterThatIsNotThereIsToldAndNothingIsInItsHands) {
@@ -260,6 +401,10 @@ TEST(BatchWithoutSlurm, OptionsThatMakeNoSenseAreRefused) {
                                                       {model, "--engine", "pbs"},
                                                       {model, "--engine", "slurm", "--chunk", "0"},
                                                       {"--status"}};
+  ProcessResult backslash =
+      run({AERATE_EXECUTABLE, "batch", model, "--engine", "slurm", "-o", batch.folder() / "a\\b"});
+  EXPECT_EQ(backslash.exit_code, kUsage) << backslash.err;
+  EXPECT_TRUE(contains(backslash.err, "backslash"));
   for (const std::vector<std::string>& arguments : refused) {
     const ProcessResult result = batch.run(arguments);
     EXPECT_EQ(result.exit_code, kUsage) << testing::PrintToString(arguments) << result.err;
