@@ -1,7 +1,7 @@
 # cmake --install: the program, its manual pages and completions, its pages, and what is to be read.
 include(GNUInstallDirs)
 install(TARGETS aerate RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-install(FILES README.md LICENSE CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES README.md LICENSE CHANGELOG.md CONTRIBUTING.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Made from the program's options (src/cli/write_command_files.cpp). bash, zsh and fish look there.

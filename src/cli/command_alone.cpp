@@ -29,6 +29,12 @@ void parse_alone(CLI::App& app, std::vector<std::string> arguments) {
   }
 }
 
+std::set<std::string> other_commands(const std::string& name) {
+  std::set<std::string> commands{"hollow", "pack", "inspect", "slice", "hook", "batch", "studio"};
+  commands.erase(name);
+  return commands;
+}
+
 std::vector<CalledOption> called_options(const std::vector<const CLI::Option*>& options) {
   std::vector<CalledOption> called;
   for (const CLI::Option* option : options) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,9 @@ namespace aerate::cli {
 // `--process list`.
 void parse_alone(CLI::App& app, std::vector<std::string> arguments);
 
+// The commands of the program but this one.
+std::set<std::string> other_commands(const std::string& name);
+
 // Those of them that a call may have.
 std::vector<CalledOption> called_options(const std::vector<const CLI::Option*>& options);
 
@@ -22,7 +26,9 @@ template <typename Job>
 class CommandAlone {
  public:
   explicit CommandAlone(const char* name)
-      : config_(app_), command_(*app_.add_subcommand(name, "")), job_(command_, config_) {
+      : config_(app_, other_commands(name)),
+        command_(*app_.add_subcommand(name, "")),
+        job_(command_, config_) {
     app_.require_subcommand(1);
   }
   // With the options of a call read, which need no output.

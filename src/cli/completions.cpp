@@ -201,11 +201,11 @@ end
 function __{0}_files
     set -l token (string replace -r -- '^--?[^=]*=' '' (commandline -ct))
     set -l files (complete -C "__{0}_no_command $token")
-    set -l found (string match -ri -- '^[^\t]*\.(?:'(string join '|' $argv)')(?:\t.*)?$' $files)
+    set -l found (string match -ri -- '^[^\t]*\.(?:'(string join -- '|' $argv)')(?:\t.*)?$' $files)
     if test (count $found) = 0
-        string join \n $files
+        string join -- \n $files
     else
-        string join \n $found
+        string join -- \n $found
         string match -r -- '^[^\t]*/(?:\t.*)?$' $files
     end
     return 0

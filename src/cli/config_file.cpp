@@ -53,12 +53,16 @@ std::string read_config(std::istream& input) {
 
 class CommandConfig final : public CLI::ConfigTOML {
  public:
-  CommandConfig(const CLI::App& app, std::shared_ptr<std::set<std::string>> read)
-      : app_(app), read_(std::move(read)) {}
+  CommandConfig(const CLI::App& app, std::set<std::string> ignored,
+                std::shared_ptr<std::set<std::string>> read)
+      : app_(app), ignored_(std::move(ignored)), read_(std::move(read)) {}
 
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::istringstream text(read_config(input));
     std::vector<CLI::ConfigItem> found = CLI::ConfigTOML::from_config(text);
+    std::erase_if(found, [&](const CLI::ConfigItem& item) {
+      return !item.parents.empty() && ignored_.contains(item.parents.front());
+    });
     const std::vector<CLI::App*> commands =
         const_cast<CLI::App&>(app_).get_subcommands();  // NOLINT: the const overload lists only all of them
     if (commands.empty()) return found;
@@ -73,19 +77,21 @@ class CommandConfig final : public CLI::ConfigTOML {
 
  private:
   const CLI::App& app_;
+  std::set<std::string> ignored_;
   std::shared_ptr<std::set<std::string>> read_;
 };
 
 }  // namespace
 
-ConfigFile::ConfigFile(CLI::App& app) : read_(std::make_shared<std::set<std::string>>()) {
+ConfigFile::ConfigFile(CLI::App& app, std::set<std::string> ignored)
+    : read_(std::make_shared<std::set<std::string>>()) {
   // Looked at before it is opened.
   option_ = app.set_config("--config", "", "Read options from this file (TOML or INI)")
                 ->type_name("FILE")
                 ->check(why_unreadable)
                 ->trigger_on_parse();
   app.allow_config_extras(CLI::config_extras_mode::error);
-  app.config_formatter(std::make_shared<CommandConfig>(app, read_));
+  app.config_formatter(std::make_shared<CommandConfig>(app, std::move(ignored), read_));
 }
 
 std::string ConfigFile::path() const {

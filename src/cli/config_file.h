@@ -16,7 +16,9 @@ namespace aerate::cli {
 // sections or keys nested deeper than 8.
 class ConfigFile {
  public:
-  explicit ConfigFile(CLI::App& app);  // adds the option
+  // Adds the option.
+  //   ignored: sections of commands that this program does not have
+  explicit ConfigFile(CLI::App& app, std::set<std::string> ignored = {});
 
   // The file, if one was given.
   std::string path() const;

@@ -123,6 +123,7 @@ std::optional<PrintedCups> cups_of(const HollowedModel& hollowed, const HollowOp
   const double spacing = 2 * options.drainage->channel_radius / kColumnsPerChannel;
   auto cups = printed_cups(cups_of(hollowed.carved.solid.mesh, hollowed.packing.limits.roof.up, spacing),
                            process, options.build);
+  monitor.check_interrupted();
   warn_of_suction(*cups, process, monitor);
   return cups;
 }
@@ -213,6 +214,7 @@ HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor, const Also
   if (pending) results.push_back(&pending->file());
   views.write([&] { return scene_of(best.hollowed, report); }, log);
   also(best, report, log);
+  log.check_interrupted();  // the last time that nothing is left behind
   views.commit_with(std::move(results));
   report.stages = log.finish();
   report.notices = log.notices();

@@ -2,9 +2,14 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <pybind11/numpy.h>
@@ -13,6 +18,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -29,6 +35,65 @@ namespace {
 // Rows of a mesh, contiguous.
 using Vertices = py::array_t<double, py::array::c_style>;
 using Triangles = py::array_t<std::int64_t, py::array::c_style>;
+
+// The jobs of this process, which the interpreter's end has to wait for: a thread that asks for its lock afterwards is ended by it wherever it is.
+class Jobs {
+ public:
+  // Throws where the interpreter is at its end.
+  void begin() {
+    const std::scoped_lock lock(mutex_);
+    if (is_ending_) throw Ending();
+    ++count_;
+  }
+  void end() {
+    const std::scoped_lock lock(mutex_);
+    --count_;
+    ended_.notify_all();
+  }
+  // Stops them, and waits for their ends.
+  void end_all() {
+    std::unique_lock lock(mutex_);
+    is_ending_ = true;
+    ended_.wait(lock, [&] { return count_ == 0; });
+  }
+  bool is_ending() const { return is_ending_; }
+
+  struct Ending {};
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  std::size_t count_ = 0;
+  std::atomic<bool> is_ending_ = false;
+};
+
+// A process that is forked has none: it gets others, and nobody waits for those of its parent.
+std::unique_ptr<Jobs>& jobs() {
+  static auto* const jobs = new std::unique_ptr<Jobs>(new Jobs);  // never gone: threads may outlive all else
+  return *jobs;
+}
+// Nor has it the threads that libraries began when they were loaded, and for which they would wait at its end for ever: it ends before they do.
+void forget_jobs() {
+  static_cast<void>(jobs().release());
+  jobs().reset(new Jobs);
+  static_cast<void>(::on_exit(
+      [](int status, void*) {
+        std::fflush(nullptr);
+        ::_exit(status);
+      },
+      nullptr));
+}
+
+class JobGuard {
+ public:
+  JobGuard() { jobs_.begin(); }
+  ~JobGuard() { jobs_.end(); }
+  JobGuard(const JobGuard&) = delete;
+  JobGuard& operator=(const JobGuard&) = delete;
+
+ private:
+  Jobs& jobs_ = *jobs();
+};
 
 // Tells a Python function what is done, and stops where that or a signal's handler raises. For the thread that runs the job
 // without the interpreter's lock; stages may ask from others whether to stop.
@@ -51,6 +116,7 @@ class CallingMonitor final : public Monitor {
   // Handlers run in Python's main thread alone. The lock is asked for rarely: other threads of Python may be busy with it.
   void check_interrupted() override {
     constexpr std::chrono::milliseconds kBetween{50};
+    if (jobs()->is_ending()) throw Jobs::Ending();
     const Clock::time_point now = Clock::now();
     if (now - asked_.load() < kBetween) return;
     asked_ = now;
@@ -119,6 +185,8 @@ cli::CalledResult run_unlocked(const cli::CalledCommand& command, const cli::Cal
     throw;
   } catch (const py::error_already_set&) {
     throw;
+  } catch (const Jobs::Ending&) {
+    throw;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
@@ -130,6 +198,7 @@ cli::CalledResult run_unlocked(const cli::CalledCommand& command, const cli::Cal
 py::tuple run(const std::string& name, const py::bytes& model, const std::optional<Vertices>& vertices,
               const std::optional<Triangles>& triangles, const std::vector<py::bytes>& arguments,
               const py::object& progress) {
+  const JobGuard guard;  // until nothing of it asks for the interpreter's lock any more
   std::optional<MeshArrays> arrays;
   if (vertices && triangles)
     arrays = {{vertices->data(), static_cast<std::size_t>(vertices->size())},
@@ -173,11 +242,17 @@ PYBIND11_MODULE(_core, module) {
   module.attr("version") = AERATE_VERSION;
   module.def("run", &aerate::run);
   module.def("options", &aerate::options);
+  module.def(
+      "end_jobs", [] { aerate::jobs()->end_all(); }, py::call_guard<py::gil_scoped_release>());
+  module.def("forget_jobs",
+             &aerate::forget_jobs);  // in a process that was forked from one that has the module
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const Error& error) {
       aerate::raise_as_in_python(error);
+    } catch (const aerate::Jobs::Ending&) {
+      PyErr_SetNone(PyExc_SystemExit);  // which ends a thread without a word
     }
   });
 }

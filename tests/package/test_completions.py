@@ -26,7 +26,7 @@ class Completions(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
-        folder = Path(cls.temporary.name).resolve()
+        cls.folder = folder = Path(cls.temporary.name).resolve()
         for name in ("bunny.stl", "my model.STL", "part.3mf", "notes.txt", "shot.png", "settings.ini", "print.gcode", "table.csv",
                      "sub/inner.stl", "texts/readme.txt"):
             (folder / name).parent.mkdir(exist_ok=True)
@@ -90,6 +90,14 @@ class Completions(unittest.TestCase):
     def test_names_with_spaces(self):
         self.assertEqual(self.files("aerate hollow my"), {"my model.STL"})
         self.assertEqual(self.shell.offered("aerate hollow my\\ mo")[-1], "my model.STL")
+
+    def test_a_name_that_begins_with_a_dash_hides_no_other(self):
+        dashed = self.folder / "-g.stl"
+        dashed.touch()
+        try:
+            self.assertLessEqual({"bunny.stl", "part.3mf"}, self.files("aerate hollow "))
+        finally:
+            dashed.unlink()
 
     def test_files_of_options(self):
         self.assertEqual(self.files("aerate hollow --picture s"), {"shot.png", "sub"})

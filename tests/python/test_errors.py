@@ -1,6 +1,8 @@
 """What is refused: by which exception, and in which words."""
 
+import decimal
 import errno
+import fractions
 import os
 import pickle
 
@@ -206,3 +208,34 @@ def test_errors_can_be_sent_to_other_processes():
 
 def test_callbacks_that_cannot_be_called_are_usage():
     refused(aerate.UsageError, aerate.hollow, cube(), progress=1)
+
+
+def test_arrays_that_are_none_are_told():
+    vertices, triangles = cube()
+    uneven = [[0, 0, 0], [1, 0]]
+    assert "vertices are no array" in str(refused(aerate.UsageError, aerate.inspect, (uneven, triangles)))
+    masked = np.ma.masked_less(vertices, 1)
+    assert "vertices are masked" in str(refused(aerate.UsageError, aerate.inspect, (masked, triangles)))
+    far = triangles.astype(np.uint64)
+    far[0, 0] = 2**63 + 5
+    assert f"triangles[0] is ({2**63 + 5}, 2, 3)" in str(refused(aerate.InputError, aerate.inspect, (vertices, far)))
+    packing = aerate.pack((vertices, triangles), max_radius=4)
+    assert "this has no surface" in str(refused(aerate.UsageError, aerate.hollow, packing))
+    named = aerate.Model(vertices, triangles, name=5)
+    assert "the model's name: 5 is no name" in str(refused(aerate.UsageError, aerate.inspect, named))
+    assert "is no name" in str(refused(aerate.UsageError, aerate.load, "a\ud800.stl"))
+
+
+def test_numbers_of_any_kind_are_values():
+    expected = aerate.pack(cube(), wall=1.5, max_voids=3).report["packing"]
+    for wall, voids in ((np.float32(1.5), 3.0), (decimal.Decimal("1.5"), np.array(3)), (fractions.Fraction(3, 2), np.int8(3))):
+        assert aerate.pack(cube(), wall=wall, max_voids=voids).report["packing"] == expected
+
+
+def test_a_configuration_file_may_have_sections_of_other_commands(fresh):
+    (fresh / "all.toml").write_text("[hollow]\nmax-voids = 2\n[pack]\nmax-voids = 3\n[batch]\njobs = 2\n[studio]\nport = 9\n")
+    assert aerate.hollow(cube(), config="all.toml").report["voids"]["count"] == 2
+    assert len(aerate.pack(cube(), config="all.toml").radii) == 3
+    aerate.inspect(cube(), config="all.toml")
+    (fresh / "wrong.toml").write_text("[hollo]\nmax-voids = 2\n")
+    refused(aerate.UsageError, aerate.hollow, cube(), config="wrong.toml")

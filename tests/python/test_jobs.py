@@ -129,3 +129,48 @@ def test_ctrl_c_is_a_keyboard_interrupt(fresh):
     assert rest.splitlines()[-1] == "stopped True" and process.returncode == 7
     assert time.monotonic() - began < 30
     assert os.listdir(fresh) == []
+
+
+# A thread that Python does not wait for is at work when the program ends.
+LEFT = """
+import os, sys, threading, aerate
+begun = threading.Event()
+def work():
+    while True:
+        aerate.hollow(sys.argv[1], output="result.stl", progress=lambda stage, share: begun.set(), process="sla", threads=1)
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+threading.Event().wait(float(sys.argv[2]))
+if len(sys.argv) > 3:  # a process that is forked has no jobs to wait for
+    child = os.fork()
+    if child:
+        assert os.waitpid(child, 0)[1] == 0
+sys.exit(0)
+"""
+
+
+@pytest.mark.parametrize("after", [0, 0.05, 0.4])
+def test_a_job_that_is_at_work_at_the_end_is_stopped(fresh, after):
+    ended = subprocess.run([sys.executable, "-c", LEFT, BUNNY, str(after)], capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
+    assert [name for name in os.listdir(fresh) if name != "result.stl"] == []
+
+
+def test_a_process_that_is_forked_ends_by_itself():
+    script = "import os, sys, aerate; child = os.fork(); print(child > 0); sys.exit(child and os.waitpid(child, 0)[1])"
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, sorted(ended.stdout.split())) == (0, ["False", "True"])
+
+
+def test_the_end_of_a_forked_process_waits_for_nobody(fresh):
+    ended = subprocess.run([sys.executable, "-c", LEFT, BUNNY, "0.1", "fork"], capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_a_sub_interpreter_is_refused():
+    interpreters = pytest.importorskip("_xxsubinterpreters")
+    script = "import sys, _xxsubinterpreters as x; x.run_string(x.create(), sys.argv[1])"
+    within = f"import sys; sys.path = {sys.path!r}; import aerate"
+    ended = subprocess.run([sys.executable, "-c", script, within], capture_output=True, text=True, timeout=60)
+    assert interpreters.get_main() is not None and ended.returncode == 1
+    assert "not in a sub-interpreter" in ended.stderr

@@ -11,7 +11,11 @@ import aerate
 from aerate import _core
 
 STUB = ast.parse(Path(aerate.__file__).with_name("__init__.pyi").read_text())
-DEFINED = {each.name: each for each in STUB.body if isinstance(each, (ast.FunctionDef, ast.ClassDef))}
+DEFINED = {
+    each.name: each
+    for each in STUB.body
+    if isinstance(each, (ast.FunctionDef, ast.ClassDef)) and not each.name.startswith("_")
+}
 
 
 def test_the_package_is_marked_as_typed():

@@ -13,6 +13,7 @@ a point, a list gives an option several times, None leaves it out. Lengths are m
 help(aerate.hollow) and `aerate hollow --help`; docs/python.md tells the rest.
 """
 
+from . import _main_interpreter  # first: what it refuses would hang
 from ._commands import Hollowed, Model, Packing, hollow, inspect, load, pack
 from ._core import version as __version__
 from ._errors import Error, FailureError, InputError, MeshError, NothingToRemoveError, UsageError

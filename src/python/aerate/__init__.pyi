@@ -2,18 +2,26 @@
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Optional, Union
+from dataclasses import dataclass
+from typing import Any, Optional, Protocol, SupportsFloat, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 _Path = Union[str, bytes, os.PathLike[Any]]
-_Value = Union[str, float, _Path, Sequence[float], NDArray[Any], None]  # a sequence of numbers: with commas between them
+_Value = Union[str, SupportsFloat, _Path, Sequence[float], NDArray[Any], None]  # a sequence of numbers: with commas between them
 _List = Union[_Value, Sequence[_Value]]  # a sequence of values: the option several times
 _Flag = Optional[bool]
 _FlagOrValue = Union[bool, _Value]
 _Progress = Optional[Callable[[str, float], object]]  # of the stage, and the share of it that is done
-_Model = Union[_Path, Model, Hollowed, Packing, tuple[Any, Any]]  # vertices (n, 3), mm, and triangles (m, 3)
+
+class _Surface(Protocol):
+    @property
+    def vertices(self) -> Any: ...  # (n, 3), mm
+    @property
+    def triangles(self) -> Any: ...  # (m, 3)
+
+_Model = Union[_Path, _Surface, tuple[Any, Any], list[Any]]  # or a pair of the two
 
 __version__: str
 
@@ -29,6 +37,7 @@ class InputError(Error): ...
 class MeshError(Error): ...
 class NothingToRemoveError(Error): ...
 
+@dataclass(frozen=True, eq=False)
 class Model:
     vertices: NDArray[np.float64]
     triangles: NDArray[np.int32]
@@ -47,6 +56,7 @@ class Model:
     ) -> None: ...
     def __iter__(self) -> Iterator[Any]: ...
 
+@dataclass(frozen=True, eq=False)
 class Packing:
     centres: NDArray[np.float64]
     radii: NDArray[np.float64]
@@ -54,6 +64,7 @@ class Packing:
     triangles: Optional[NDArray[np.int32]]
     report: dict[str, Any]
 
+@dataclass(frozen=True, eq=False)
 class Hollowed:
     vertices: NDArray[np.float64]
     triangles: NDArray[np.int32]

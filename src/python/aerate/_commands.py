@@ -1,6 +1,8 @@
 """load, inspect, pack and hollow. Options become the words of a command line, which the program's own code reads."""
 
+import atexit
 import dataclasses
+import decimal
 import difflib
 import functools
 import json
@@ -12,7 +14,12 @@ import typing
 import numpy as np
 
 from . import _core
-from ._errors import UsageError
+from ._errors import InputError, UsageError
+
+
+# Jobs of threads that Python does not wait for are stopped before it ends.
+atexit.register(_core.end_jobs)
+os.register_at_fork(after_in_child=_core.forget_jobs)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -113,14 +120,24 @@ def _is_point(items):
     return bool(items) and all(map(_is_number, items))
 
 
+def _bytes_of(what, text):
+    """A name as the system has it."""
+    try:
+        return os.fsencode(text)
+    except (TypeError, UnicodeError) as error:
+        raise UsageError(f"{what}: {text!r} is no name: {error}") from None
+
+
 def _word(option, value):
     """A value as it is written on a command line."""
     if isinstance(value, (str, bytes, os.PathLike)) and value:
-        return os.fsencode(value)
+        return _bytes_of(f"--{option.name}", value)
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, numbers.Integral) and _is_number(value):
         return b"%d" % int(value)
-    if _is_number(value):
-        return repr(float(value)).encode()
+    if _is_number(value) or isinstance(value, decimal.Decimal):
+        return repr(float(value)).removesuffix(".0").encode()
     items = _items(value)
     if _is_point(items):
         return b",".join(_word(option, each) for each in items)
@@ -142,6 +159,8 @@ def _arguments(command, options):
         if option is None:
             close = difflib.get_close_matches(name, known, n=1)
             hint = f"did you mean '{close[0]}'?" if close else f"see help(aerate.{command})"
+            if name in ("json", "quiet"):
+                hint = "a call returns its report and prints nothing"
             raise UsageError(f"{command} has no option '{name}'", hint)
         if value is None:
             continue
@@ -163,18 +182,29 @@ def _arguments(command, options):
 
 def _rows(what, array, kinds, dtype):
     """As rows of three, contiguous."""
-    array = np.asarray(array)
+    if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
+        raise UsageError(f"{what} are masked", "leave out what is masked: give the array's compressed rows")
+    try:
+        array = np.asarray(array)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{what} are no array: {error}", "give an array of shape (n, 3)") from None
     if array.dtype.kind not in kinds:
-        raise UsageError(f"{what} are of type {array.dtype}", f"give an array of {np.dtype(dtype).name}")
+        hint = "this has no surface" if array.dtype.kind == "O" and array.ndim == 0 else f"give an array of {np.dtype(dtype).name}"
+        raise UsageError(f"{what} are of type {array.dtype}", hint)
     if array.ndim != 2 or array.shape[1] != 3:
         raise UsageError(f"{what} have the shape {array.shape}", "give an array of shape (n, 3)")
-    return np.ascontiguousarray(array, dtype=dtype)
+    if dtype is np.int64 and array.size and int(array.max()) > np.iinfo(np.int64).max:
+        first = int(np.argmax((array > np.iinfo(np.int64).max).any(axis=1)))
+        row = tuple(map(int, array[first]))
+        raise InputError(f"{what}[{first}] is {row}", "triangles hold rows of the vertices, counted from 0")
+    with np.errstate(over="ignore"):  # what is not finite is refused
+        return np.ascontiguousarray(array, dtype=dtype)
 
 
 def _source(model):
     """What a model is called, its vertices and its triangles; None where a file has them."""
     if isinstance(model, (str, bytes, os.PathLike)):
-        name = os.fsencode(model)
+        name = _bytes_of("model", model)
         if b"\0" in name:
             raise UsageError("the model's name holds a null character")
         return name, None, None
@@ -184,7 +214,7 @@ def _source(model):
         raise UsageError(f"{type(model).__name__} is no model", "give a path, a Model, or a pair (vertices, triangles)")
     vertices = _rows("vertices", model.vertices, "fiu", np.float64)
     triangles = _rows("triangles", model.triangles, "iu", np.int64)
-    return os.fsencode(getattr(model, "name", "model")), vertices, triangles
+    return _bytes_of("the model's name", getattr(model, "name", "model")), vertices, triangles
 
 
 def _run(command, model, progress, options):
