@@ -48,9 +48,4 @@ struct Clearances {
 Clearances measure_clearances(const SurfaceIndex& surface, std::span<const Sphere> spheres,
                               const Roof& roof = {});
 
-// The largest ball inside the model where its winding number is 1, touching the surface (no wall); radius 0
-// if there is none. For the message when nothing fits under the limits: accurate to about 1 %. Throws
-// InterruptedError.
-Sphere largest_inscribed_sphere(const SurfaceIndex& surface, Monitor& monitor);
-
 }  // namespace aerate

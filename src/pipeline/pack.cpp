@@ -12,6 +12,7 @@
 #include "core/overhang.h"
 #include "files/sphere_table.h"
 #include "files/weld.h"
+#include "packing/largest_places.h"
 #include "packing/spread_out.h"
 #include "packing/verify.h"
 #include "pipeline/announced_file.h"
@@ -96,6 +97,13 @@ void require_room_for_roofs(const PackingMethod& method, const PackingLimits& li
                   largest_without_roof(limits.roof), std::ceil(2 * limits.max_radius)));
 }
 
+// Where parts of the model overlap, the packers take a region for what is filled once.
+void leave_out_kept(const PreparedModel& model, Packing& packing) {
+  if (model.kept)
+    packing.statistics.overlapped_region += std::erase_if(
+        packing.spheres, [&](const Sphere& sphere) { return model.kept->holds(sphere.centre); });
+}
+
 Packing pack_unverified(const PreparedModel& model, const PackingRequest& request, Monitor& monitor) {
   if (!request.spheres.empty()) return given_packing(request);
   require_room_for_roofs(*request.method, request.sphere_limits());
@@ -103,11 +111,19 @@ Packing pack_unverified(const PreparedModel& model, const PackingRequest& reques
   stop.volume = model.inspection.filled_volume;
   Packing packing =
       request.method->pack(model.room(), request.sphere_limits(), stop, monitor, request.device);
-  // Where parts of the model overlap, the packers take a region for what is filled once.
-  if (model.kept)
-    packing.statistics.overlapped_region += std::erase_if(
-        packing.spheres, [&](const Sphere& sphere) { return model.kept->holds(sphere.centre); });
+  leave_out_kept(model, packing);
   return packing;
+}
+
+// Where the packing has found no place although there are some: it looks from the centres of a grid's cells.
+Packing packed_from_samples(const PreparedModel& model, const SurfaceIndex& room,
+                            const PackingRequest& request, Packing packing, Monitor& monitor) {
+  if (!request.spheres.empty() || request.method->on_lattice) return packing;
+  PackingStop stop = request.stop;
+  stop.volume = model.inspection.filled_volume;
+  packing.spheres = largest_places(room, request.sphere_limits(), stop, monitor);
+  leave_out_kept(model, packing);
+  return verify_packing(room, std::move(packing));
 }
 
 // Of what is filled: more than this lies in several parts.
@@ -230,6 +246,8 @@ PackedModel pack_model(const PreparedModel& model, const PackingRequest& request
   if (!request.spheres.empty()) require_no_fault(model, surface, packing, request);
   packing = verify_packing(room, std::move(packing));
   monitor.check_interrupted();
+  if (packing.spheres.empty())
+    packing = packed_from_samples(model, room, request, std::move(packing), monitor);
   if (packing.spheres.empty()) refuse_empty(model, room, request, monitor);
 
   if (model.inspection.parts_overlap() && packing.statistics.overlapped_region > 0)

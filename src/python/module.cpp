@@ -69,13 +69,13 @@ class Jobs {
 
 // A process that is forked has none: it gets others, and nobody waits for those of its parent.
 std::unique_ptr<Jobs>& jobs() {
-  static auto* const jobs = new std::unique_ptr<Jobs>(new Jobs);  // never gone: threads may outlive all else
+  static auto* const jobs = new std::unique_ptr<Jobs>(std::make_unique<Jobs>());  // never gone: threads may outlive all else
   return *jobs;
 }
 // Nor has it the threads that libraries began when they were loaded, and for which they would wait at its end for ever: it ends before they do.
 void forget_jobs() {
   static_cast<void>(jobs().release());
-  jobs().reset(new Jobs);
+  jobs() = std::make_unique<Jobs>();
   static_cast<void>(::on_exit(
       [](int status, void*) {
         std::fflush(nullptr);

@@ -430,6 +430,27 @@ TEST(Command, InterruptLeavesNothingBehind) {
   }
 }
 
+// A flat bunny: the packing itself finds no place for a radius of 2.8 mm.
+TEST(Command, APlaceThatARefusalWouldNameIsFound) {
+  const Job job;
+  const std::vector<std::string> flat{"--process", "sls",    "--shape", "spheres",      "--scale",
+                                      "1,1,0.12",  "--wall", "0.7",     "--max-radius", "60"};
+  std::vector<std::string> command{AERATE_EXECUTABLE, "pack", sample("bunny.stl"), "-o", job.output("a.csv"),
+                                   "--json",          "-",    "--min-radius",      "2.8"};
+  command.insert(command.end(), flat.begin(), flat.end());
+  const ProcessResult result = run(command);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json spheres = Json::parse(result.out)["packing"];
+  EXPECT_GE(spheres.at("spheres"), 1) << spheres;
+  // And one that is larger than all is refused as ever.
+  command[8] = "3.4";
+  EXPECT_EQ(run(command).exit_code, 5);
+  // It is a void like others.
+  std::vector<std::string> arguments = flat;
+  arguments.insert(arguments.end(), {"--min-radius", "2.8", "--no-drain"});
+  EXPECT_EQ(run(job.hollow(sample("bunny.stl"), arguments)).exit_code, 0);
+}
+
 // A packing of minutes ends within moments of the signal.
 TEST(Command, InterruptEndsALongPacking) {
   const std::vector<std::vector<std::string>> methods{

@@ -155,30 +155,5 @@ TEST(Clearances, AreMeasuredExactly) {
   EXPECT_FALSE(measure_clearances(SurfaceIndex(box), std::span(spheres).first(1)).gap.has_value());
 }
 
-TEST(LargestInscribedSphere, IsThatOfABoxAndOfATorus) {
-  Monitor monitor;
-  const SurfaceIndex box(test::make_box({0, 0, 0}, {4, 10, 30}));
-  const Sphere in_box = largest_inscribed_sphere(box, monitor);
-  EXPECT_NEAR(in_box.radius, 2.0, 0.02);
-  const Mesh torus = test::make_torus(20, 3, 128, 64);
-  const Sphere in_torus = largest_inscribed_sphere(SurfaceIndex(torus), monitor);
-  EXPECT_NEAR(in_torus.radius, 3.0 * std::cos(std::numbers::pi / 64), 0.03);
-  EXPECT_NEAR(test::distance_to_surface(torus, in_torus.centre), in_torus.radius, 1e-9);
-}
-
-TEST(LargestInscribedSphere, LookingForItCanBeInterrupted) {
-  class StoppedLater : public Monitor {
-   public:
-    void check_interrupted() override {
-      if (++polls_ > 20) throw InterruptedError();
-    }
-
-   private:
-    int polls_ = 0;
-  } monitor;
-  const SurfaceIndex box(test::make_box({0, 0, 0}, {4, 10, 30}));
-  EXPECT_THROW(largest_inscribed_sphere(box, monitor), InterruptedError);
-}
-
 }  // namespace
 }  // namespace aerate
