@@ -69,7 +69,8 @@ class Jobs {
 
 // A process that is forked has none: it gets others, and nobody waits for those of its parent.
 std::unique_ptr<Jobs>& jobs() {
-  static auto* const jobs = new std::unique_ptr<Jobs>(std::make_unique<Jobs>());  // never gone: threads may outlive all else
+  static auto* const jobs =
+      new std::unique_ptr<Jobs>(std::make_unique<Jobs>());  // never gone: threads may outlive all else
   return *jobs;
 }
 // Nor has it the threads that libraries began when they were loaded, and for which they would wait at its end for ever: it ends before they do.
