@@ -99,15 +99,15 @@ TEST(Batch, AJobThatIsKilledIsARowThatIsTriedAgainOnlyWhenThatIsAskedFor) {
   EXPECT_TRUE(contains(result.out, "2 of 2 models are done, 1 in this run"));
 }
 
-// Takes some seconds, so that there is something to disturb.
-const std::vector<std::string> kSlow{"--tolerance", "0.01", "--max-voids", "500"};
+// For one model that takes some seconds, so that there is something to disturb.
+std::vector<std::string> slow_command(const Batch& batch, const std::string& name) {
+  fs::copy(sample("bunny.stl"), batch.models() / name);
+  return batch.command({batch.models(), "--tolerance", "0.01", "--max-voids", "500"});
+}
 
 TEST(Batch, AJobThatIsToldToEndIsStillToBeDone) {
   const Batch batch;
-  fs::copy(sample("bunny.stl"), batch.models() / "slow.stl");
-  std::vector<std::string> slow = kSlow;
-  slow.emplace_back(batch.models());
-  Process process(batch.command(slow));
+  Process process(slow_command(batch, "slow.stl"));
   wait_until([&] { return !temporary_files(batch.results()).empty(); });
   kill(process_that_made(temporary_files(batch.results()).front()), SIGTERM);
   const ProcessResult result = process.wait();
@@ -120,10 +120,7 @@ TEST(Batch, AJobThatIsToldToEndIsStillToBeDone) {
 
 TEST(Batch, AModelThatChangesMeanwhileIsStillToBeDone) {
   const Batch batch;
-  fs::copy(sample("bunny.stl"), batch.models() / "a.stl");
-  std::vector<std::string> slow = kSlow;
-  slow.emplace_back(batch.models());
-  Process process(batch.command(slow));
+  Process process(slow_command(batch, "a.stl"));
   wait_until([&] { return !temporary_files(batch.results()).empty(); });
   batch.block("a.stl");
   EXPECT_EQ(process.wait().exit_code, kNoneDone);
@@ -425,10 +422,7 @@ TEST(Batch, TwoAtWorkInOneFolderAreOneTooMany) {
 // What ends them is slow here.
 TEST(Batch, ABatchWaitsForTheJobsOfOneThatWasKilled) {
   const Batch batch;
-  fs::copy(sample("bunny.stl"), batch.models() / "slow.stl");
-  std::vector<std::string> slow = kSlow;
-  slow.emplace_back(batch.models());
-  Process process(batch.command(slow));
+  Process process(slow_command(batch, "slow.stl"));
   wait_until([&] { return !temporary_files(batch.results()).empty(); });
   const pid_t job = process_that_made(temporary_files(batch.results()).front());
   const pid_t keeper = parent_of(job);

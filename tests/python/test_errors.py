@@ -217,8 +217,8 @@ def test_arrays_that_are_none_are_told():
     masked = np.ma.masked_less(vertices, 1)
     assert "vertices are masked" in str(refused(aerate.UsageError, aerate.inspect, (masked, triangles)))
     far = triangles.astype(np.uint64)
-    far[0, 0] = 2**63 + 5
-    assert f"triangles[0] is ({2**63 + 5}, 2, 3)" in str(refused(aerate.InputError, aerate.inspect, (vertices, far)))
+    far[4, 0] = 2**63 + 5
+    assert f"triangles[4] is ({2**63 + 5}, {far[4, 1]}, {far[4, 2]})" in str(refused(aerate.InputError, aerate.inspect, (vertices, far)))
     packing = aerate.pack((vertices, triangles), max_radius=4)
     assert "this has no surface" in str(refused(aerate.UsageError, aerate.hollow, packing))
     named = aerate.Model(vertices, triangles, name=5)

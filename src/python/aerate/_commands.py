@@ -194,7 +194,7 @@ def _rows(what, array, kinds, dtype):
     if array.ndim != 2 or array.shape[1] != 3:
         raise UsageError(f"{what} have the shape {array.shape}", "give an array of shape (n, 3)")
     if dtype is np.int64 and array.size and int(array.max()) > np.iinfo(np.int64).max:
-        first = int(np.argmax((array > np.iinfo(np.int64).max).any(axis=1)))
+        first = int(np.argmax((array > np.uint64(np.iinfo(np.int64).max)).any(axis=1)))
         row = tuple(map(int, array[first]))
         raise InputError(f"{what}[{first}] is {row}", "triangles hold rows of the vertices, counted from 0")
     with np.errstate(over="ignore"):  # what is not finite is refused
