@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <numeric>
 #include <tbb/parallel_for.h>
 
 #include "kernels/constants.h"
+#include "kernels/roof.h"
 #include "kernels/triangle_bvh.h"
 
 namespace aerate {
@@ -97,10 +97,6 @@ class PlaceSearch {
   std::vector<Sphere> samples_, taken_;
 };
 
-double ball_volume(double radius) {
-  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-}
-
 }  // namespace
 
 Sphere largest_inscribed_sphere(const SurfaceIndex& surface, Monitor& monitor) {
@@ -121,7 +117,7 @@ std::vector<Sphere> largest_places(const SurfaceIndex& surface, const PackingLim
     if (place.radius < limits.min_radius || place.radius <= 0 || limits.roof.shapes(place.radius)) break;
     // What is as far from this one as the surface is from others, less the wall.
     search.take(place.centre, place.radius + limits.gap - limits.wall);
-    volume += ball_volume(place.radius);
+    volume += void_volume(limits.roof, place.radius);
     places.push_back(place);
   }
   return places;
