@@ -42,10 +42,11 @@ class FourConstraints {
       radius_[k] = radius - (k == 0 ? pull_value : value);
       artificial_[k] = true;
     }
-    linearise(p);
+    move_to(p);
+    solve();
   }
   AERATE_HD void raise_pull(double value) { radius_[0] -= value; }
-  AERATE_HD double pull_weight() const { return -dot(cofactor_[0], last_normal_); }
+  AERATE_HD double pull_weight() const { return -dot(cofactor_[0], normal_[3]); }
   AERATE_HD bool any_artificial_beside_pull() const {
     return artificial_[1] || artificial_[2] || artificial_[3];
   }
@@ -57,18 +58,24 @@ class FourConstraints {
 
   // Normals, values and weights at p; false if the four normals lie in a plane.
   AERATE_HD bool linearise(Vec3d p) {
-    Vec3d normal[4];
+    move_to(p);
+    return solve();
+  }
+  // Normals and values at p alone.
+  AERATE_HD void move_to(Vec3d p) {
     AERATE_UNROLL
     for (int k = 0; k < 4; ++k) {
       const Vec3d away = p - centre_[k];
       const double distance = length(away);
-      normal[k] = away * (1.0 / distance);
+      normal_[k] = away * (1.0 / distance);
       value_[k] = distance - radius_[k];
     }
-    last_normal_ = normal[3];
-    const Vec3d e0 = normal[0] - normal[3];
-    const Vec3d e1 = normal[1] - normal[3];
-    const Vec3d e2 = normal[2] - normal[3];
+  }
+  // Weights of the normals that are known; false if these lie in a plane.
+  AERATE_HD bool solve() {
+    const Vec3d e0 = normal_[0] - normal_[3];
+    const Vec3d e1 = normal_[1] - normal_[3];
+    const Vec3d e2 = normal_[2] - normal_[3];
     const Vec3d c0 = cross(e1, e2);
     const double determinant = dot(e0, c0);
     if (!(determinant > kFlat || determinant < -kFlat)) return false;
@@ -88,6 +95,10 @@ class FourConstraints {
   AERATE_HD double greatest() const {
     return max_of(max_of(value_[0], value_[1]), max_of(value_[2], value_[3]));
   }
+  // How far the four are from being equal.
+  AERATE_HD double spread() const {
+    return greatest() - min_of(min_of(value_[0], value_[1]), min_of(value_[2], value_[3]));
+  }
   AERATE_HD bool any_artificial() const {
     return artificial_[0] || artificial_[1] || artificial_[2] || artificial_[3];
   }
@@ -98,24 +109,26 @@ class FourConstraints {
     double last = 1;
     AERATE_UNROLL
     for (int k = 0; k < 3; ++k) {
-      const double w = -dot(cofactor_[k], last_normal_);
+      const double w = -dot(cofactor_[k], normal_[3]);
       least = min_of(least, w);
       last -= w;
     }
     return min_of(least, last);
   }
 
-  // Lets a constraint in, at the linearisation's point p.
+  // Lets a constraint in, at the point p of the linearisation. The normals are those at p still; the weights
+  // have to be solved for.
   AERATE_HD void enter(const Clearance& constraint, Vec3d p) {
     const Vec3d away = p - constraint.centre;
-    const Vec3d normal = away * (1.0 / length(away));
+    const double distance = length(away);
+    const Vec3d normal = away * (1.0 / distance);
     double weight[4], share[4];
     weight[3] = 1;
     share[3] = 1;
     AERATE_UNROLL
     for (int k = 0; k < 3; ++k) {
-      weight[k] = -dot(cofactor_[k], last_normal_);
-      share[k] = dot(cofactor_[k], normal - last_normal_);
+      weight[k] = -dot(cofactor_[k], normal_[3]);
+      share[k] = dot(cofactor_[k], normal - normal_[3]);
       weight[3] -= weight[k];
       share[3] -= share[k];
     }
@@ -135,6 +148,8 @@ class FourConstraints {
       if (k == leaving) {
         centre_[k] = constraint.centre;
         radius_[k] = constraint.radius;
+        normal_[k] = normal;
+        value_[k] = distance - constraint.radius;
         artificial_[k] = false;
       }
     }
@@ -147,7 +162,7 @@ class FourConstraints {
   double radius_[4];
   bool artificial_[4];
   double value_[4];
-  Vec3d last_normal_;
+  Vec3d normal_[4];
   Vec3d cofactor_[3];
 };
 
@@ -164,6 +179,11 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
                                                  double extent, const RefineLimits& limits) {
   constexpr int kMostSteps = 48;
   constexpr int kMostRestarts = 2;
+  constexpr double kAlike = 0.02;  // of the least value: four constraints that are equal for a step's purpose
+  // A region without a maximum of the least value is left at once where none is near to it. Else one step more
+  // makes the bound tighter, for which the region will not be searched again as soon.
+  constexpr double kNear = 0.85;
+  constexpr int kMostStepsBelow = 1;
   Vec3d p = anchor.point;
   LocalMaximum best{p, -kInfinity, limits.most};
   Clearance here = clearance_at(field, anchor, p, limits.most, limits.most);
@@ -174,23 +194,24 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
   FourConstraints four;
   const double slack = max_of(limits.least + limits.region * extent, here.value + 0.5 * extent);
   four.reset(p, slack, 64 * slack);
-  int restarts = 0;
+  int restarts = 0, steps_below = 0;
   for (int step_count = 0; step_count < kMostSteps; ++step_count) {
     four.enter(here, p);
     for (int k = 0; k < 2; ++k) {
-      if (!four.linearise(p)) return best;
+      if (!four.solve()) return best;
       Vec3d step = four.step();
-      const double walked = length(step);
-      if (walked > 2 * extent) step = step * (2 * extent / walked);
+      const double walked_squared = length_squared(step);
+      if (walked_squared > 4 * extent * extent) step = step * (2 * extent / std::sqrt(walked_squared));
       p = p + step;
-      if (walked < 1e-3 * extent) break;
+      four.move_to(p);
+      if (four.spread() < kAlike * limits.least) break;
     }
-    if (!four.linearise(p)) return best;
     const double model = four.greatest();
     if (model < limits.least) {
       best.bound = max_of(model, best.value);
-      return best;
+      if (model < kNear * limits.least || ++steps_below > kMostStepsBelow) return best;
     }
+    if (!four.solve()) return best;
     // What is clipped has no constraint to enter, so it has to be enough.
     const double enough = min_of(model, limits.most) - limits.tolerance;
     here = clearance_at(field, anchor, p, limits.most, enough);
@@ -201,6 +222,7 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
       if (best.value >= limits.most) return best;
     }
     best.bound = best.value;
+    if (steps_below > 0) return best;
     if ((!four.any_artificial() && four.least_weight() >= -1e-3) || restarts == kMostRestarts) return best;
     // Not a maximum: the region ends here, or f rises along an edge between three of the four.
     ++restarts;

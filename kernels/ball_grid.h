@@ -31,8 +31,9 @@ struct BallEntry {
 
 // Placed balls by the cells of a uniform grid. A ball is entered in every cell from which its clearance may
 // be `reach` or less, so that one cell answers a query whatever the sizes of the balls; a cell that lies
-// wholly in a ball names that ball alone. The grid is rebuilt with smaller cells as the largest clearance
-// left shrinks.
+// wholly in a ball names that ball alone. The balls that are there when the grid is made are listed cell by
+// cell (CSR), since a list in one piece is read three times as fast as a linked one; those that come later
+// are linked. The grid is made anew with smaller cells as the largest clearance left shrinks.
 template <typename Shape>
 struct BallGridView {
   static constexpr std::uint32_t kInsideBit = 0x80000000u;
@@ -42,33 +43,36 @@ struct BallGridView {
   double gap = 0;
   View<std::uint32_t> heads;  // by cell: kNone, first entry, or kInsideBit | ball
   View<BallEntry> entries;
+  View<const std::uint32_t> starts;  // by cell, and the end: where its balls are in `listed`
+  View<const std::uint32_t> listed;
   View<const Ball> balls;
   Shape shape{};
 
   // The ball of least clearance at p, if that is below min(limit, reach). Ties go to the smaller index.
   AERATE_HD NearestBall nearest(Vec3d p, double limit) const {
     NearestBall best{min_of(limit, reach), kNone};
-    const std::uint32_t head = heads[cells.index_at(p)];
-    if (head == kNone) return best;
-    if ((head & kInsideBit) != 0) {
+    const std::size_t cell = cells.index_at(p);
+    const std::uint32_t head = heads[cell];
+    if (head != kNone && (head & kInsideBit) != 0) {
       const std::uint32_t ball = head & ~kInsideBit;
       return {length(p - balls[ball].centre) - balls[ball].radius - gap, ball};
     }
-    for (std::uint32_t i = head; i != kNone; i = entries[i].next) {
-      const std::uint32_t id = entries[i].ball;
-      const Ball ball = balls[id];
-      // Most balls of a cell are farther than the best so far, which squares can tell. The slack keeps the
-      // rounding of squares out of the decision, which would otherwise depend on the order of the list.
-      constexpr double kSlack = 1 + 1e-14;
-      const double span = shape.span(best.clearance + ball.radius + gap, max_of(best.clearance, ball.radius));
-      const double distance_squared = length_squared(p - ball.centre);
-      if (span < 0 || distance_squared > span * span * kSlack) continue;
-      const double clearance = shape.radius_beside(p, ball, gap, distance_squared);
-      if (clearance < best.clearance || (clearance == best.clearance && id < best.ball)) {
-        best = {clearance, id};
-      }
-    }
+    for (std::uint32_t i = starts[cell]; i < starts[cell + 1]; ++i) consider(p, listed[i], best);
+    for (std::uint32_t i = head; i != kNone; i = entries[i].next) consider(p, entries[i].ball, best);
     return best;
+  }
+
+ private:
+  AERATE_HD void consider(Vec3d p, std::uint32_t id, NearestBall& best) const {
+    const Ball& ball = balls[id];
+    // Most balls of a cell are farther than the best so far, which squares can tell. The slack keeps the
+    // rounding of squares out of the decision, which would otherwise depend on the order of the list.
+    constexpr double kSlack = 1 + 1e-14;
+    const double span = shape.span(best.clearance + ball.radius + gap, max_of(best.clearance, ball.radius));
+    const double distance_squared = length_squared(p - ball.centre);
+    if (span < 0 || distance_squared > span * span * kSlack) return;
+    const double clearance = shape.radius_beside(p, ball, gap, distance_squared);
+    if (clearance < best.clearance || (clearance == best.clearance && id < best.ball)) best = {clearance, id};
   }
 };
 
@@ -116,7 +120,9 @@ struct ReorderBalls {
   }
 };
 
-enum class EnterPass { mark_inside_and_count, link };
+// What is done with the cells that balls are entered in. Balls that are linked take two passes, those that
+// are listed the others; cells that lie wholly in a ball have to be known before.
+enum class EnterPass { mark_inside_and_count, link, mark_inside, count_by_cell, list };
 
 // Enters one layer of cells along z of a ball: the unit of work, so that a large ball is not one thread's.
 template <typename Shape>
@@ -127,6 +133,8 @@ struct EnterLayer {
   EnterPass pass;
   View<std::uint32_t> first_entries;  // by layer, written by the first pass, read by the second
   View<std::uint32_t> entry_count;    // one number: entries that are given out, in an order that nobody sees
+  View<std::uint32_t> remaining;      // by cell: balls to be listed
+  View<std::uint32_t> listed;
 
   AERATE_HD void operator()(std::size_t i) const {
     const std::uint32_t id = first_ball + static_cast<std::uint32_t>(i / layers);
@@ -149,25 +157,44 @@ struct EnterLayer {
                                   grid.cells.cell_size)) {
           continue;
         }
-        const std::size_t cell = grid.cells.index(x, y, z);
         const bool inside = dx.farthest_squared + dy.farthest_squared + dz.farthest_squared <= inner * inner;
-        if (pass == EnterPass::mark_inside_and_count) {
-          if (inside) {
-            grid.heads[cell] = BallGridView<Shape>::kInsideBit | id;
-          } else {
-            ++entry;
-          }
-        } else if (!inside) {
-          const std::uint32_t head = atomic_load(grid.heads[cell]);
-          if (head == kNone || (head & BallGridView<Shape>::kInsideBit) == 0) {
-            grid.entries[entry].ball = id;
-            grid.entries[entry].next = atomic_exchange(grid.heads[cell], entry);
-            ++entry;
-          }
-        }
+        enter(id, grid.cells.index(x, y, z), inside, entry);
       }
     }
     if (pass == EnterPass::mark_inside_and_count) first_entries[i] = atomic_add(entry_count[0], entry);
+  }
+
+ private:
+  // `entry`: the layer's entries so far, or the next of them.
+  AERATE_HD void enter(std::uint32_t id, std::size_t cell, bool inside, std::uint32_t& entry) const {
+    if (inside) {
+      const bool marks = pass == EnterPass::mark_inside_and_count || pass == EnterPass::mark_inside;
+      if (marks) grid.heads[cell] = BallGridView<Shape>::kInsideBit | id;
+      return;
+    }
+    switch (pass) {
+      case EnterPass::mark_inside:
+        return;
+      case EnterPass::mark_inside_and_count:
+        ++entry;
+        return;
+      case EnterPass::link: {
+        const std::uint32_t head = atomic_load(grid.heads[cell]);
+        if (head != kNone && (head & BallGridView<Shape>::kInsideBit) != 0) return;
+        grid.entries[entry].ball = id;
+        grid.entries[entry].next = atomic_exchange(grid.heads[cell], entry);
+        ++entry;
+        return;
+      }
+      case EnterPass::count_by_cell:
+        if (grid.heads[cell] == kNone) atomic_add(remaining[cell], 1);
+        return;
+      case EnterPass::list:
+        if (grid.heads[cell] != kNone) return;
+        // From the cell's end towards its start. The order depends on timing, which no query can see.
+        listed[grid.starts[cell] + atomic_add(remaining[cell], ~std::uint32_t{0}) - 1] = id;
+        return;
+    }
   }
 };
 
@@ -225,27 +252,26 @@ class BallGrid {
     const std::size_t count = view_.cells.cell_count();
     if (heads_.size() < count) {
       heads_ = {};
+      starts_ = {};
       heads_ = executor_.template allocate<std::uint32_t>(count);
+      starts_ = executor_.template allocate<std::uint32_t>(count + 1);
     }
     view_.heads = {heads_.view().data, count};
-    executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, kNone});
-    executor_.for_each_index(1, SetAll<std::uint32_t>{entry_count_.view(), 0});
-    entries_.clear();
-    for (std::size_t k = 0; k < groups_.size(); ++k) {
-      enter(groups_[k].first, k + 1 < groups_.size() ? groups_[k + 1].first : view_.balls.size,
-            groups_[k].largest);
-    }
+    list_all();
   }
 
   // Enters the balls from `first` on, none larger than `largest`. All stay where they are until the next
   // call.
   void enter(View<const Ball> balls, std::size_t first, double largest) {
+    constexpr std::size_t kFew = 1000;
     view_.balls = balls;
     if (balls.size == first) return;
-    // Balls of about the same size are entered together by `reset`.
+    // Balls of about the same size are entered together.
     if (groups_.empty() || largest < 0.5 * groups_.back().largest) groups_.push_back({first, largest});
     groups_.back().largest = max_of(groups_.back().largest, largest);
-    enter(first, balls.size, largest);
+    link(first, balls.size, largest);
+    // To list them all again costs about as much as to have linked a fifth of them.
+    if (entries_.size() > kFew && entries_.size() > view_.listed.size / 5) list_all();
   }
 
  private:
@@ -261,11 +287,62 @@ class BallGrid {
     return static_cast<double>(max_of(min_of(fitting, kMost), std::size_t{1024}));
   }
 
-  void enter(std::size_t first, std::size_t last, double largest) {
-    using namespace ball_grid_detail;
+  // At most so many layers of cells along z has a ball no larger than `largest`.
+  std::uint32_t layers_of(double largest) const {
     const double beside = view_.shape.span(2 * (largest + view_.gap + view_.reach), largest);
     const double across = view_.shape.span(beside, view_.reach) * view_.cells.cells_per_mm;
-    const auto layers = static_cast<std::uint32_t>(min_of(across + 3, view_.cells.count_z * 1.0));
+    return static_cast<std::uint32_t>(min_of(across + 3, view_.cells.count_z * 1.0));
+  }
+
+  // Lists the balls that have been entered so far, cell by cell; none are linked then.
+  void list_all() {
+    using namespace ball_grid_detail;
+    const std::size_t count = view_.heads.size;
+    executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, kNone});
+    executor_.for_each_index(1, SetAll<std::uint32_t>{entry_count_.view(), 0});
+    entries_.clear();
+    auto remaining = executor_.template allocate<std::uint32_t>(count);
+    executor_.for_each_index(count, SetAll<std::uint32_t>{remaining.view(), 0});
+    for_each_layer(EnterPass::mark_inside, remaining.view());
+    for_each_layer(EnterPass::count_by_cell, remaining.view());
+    const std::uint64_t total =
+        executor_.exclusive_scan(View<const std::uint32_t>(remaining.view()), {starts_.view().data, count});
+    require_fewer_than_bits(total);
+    executor_.for_each_index(
+        1, SetAll<std::uint32_t>{{starts_.view().data + count, 1}, static_cast<std::uint32_t>(total)});
+    view_.starts = {starts_.view().data, count + 1};
+    listed_.clear();
+    listed_.resize(executor_, static_cast<std::size_t>(total));
+    for_each_layer(EnterPass::list, remaining.view());
+    view_.listed = listed_.view();
+  }
+
+  void for_each_layer(ball_grid_detail::EnterPass pass, View<std::uint32_t> remaining) {
+    for (std::size_t k = 0; k < groups_.size(); ++k) {
+      const std::size_t last = k + 1 < groups_.size() ? groups_[k + 1].first : view_.balls.size;
+      const std::uint32_t layers = layers_of(groups_[k].largest);
+      executor_.for_each_index(
+          (last - groups_[k].first) * layers,
+          ball_grid_detail::EnterLayer<Shape>{view_,
+                                              static_cast<std::uint32_t>(groups_[k].first),
+                                              layers,
+                                              pass,
+                                              {},
+                                              {},
+                                              remaining,
+                                              listed_.view()});
+    }
+  }
+
+  static void require_fewer_than_bits(std::uint64_t entries) {
+    if (entries >= BallGridView<Shape>::kInsideBit) {
+      throw std::length_error("ball grid: more than 2^31 - 1 entries");
+    }
+  }
+
+  void link(std::size_t first, std::size_t last, double largest) {
+    using namespace ball_grid_detail;
+    const std::uint32_t layers = layers_of(largest);
     const std::size_t at_a_time = max_of(most_at_a_time_ / layers, std::size_t{1});
     for (std::size_t begin = first; begin < last; begin += at_a_time) {
       const std::size_t count = min_of(at_a_time, last - begin) * layers;
@@ -275,12 +352,12 @@ class BallGrid {
                               layers,
                               EnterPass::mark_inside_and_count,
                               first_entries_.view(),
-                              entry_count_.view()};
+                              entry_count_.view(),
+                              {},
+                              {}};
       executor_.for_each_index(count, layer);
       const std::uint32_t entries = executor_.download(View<const std::uint32_t>(entry_count_.view())).at(0);
-      if (entries >= BallGridView<Shape>::kInsideBit) {
-        throw std::length_error("ball grid: more than 2^31 - 1 entries");
-      }
+      require_fewer_than_bits(entries);
       entries_.resize(executor_, entries);
       view_.entries = entries_.view();
       layer.grid = view_;
@@ -293,8 +370,8 @@ class BallGrid {
   BallGridView<Shape> view_;
   std::size_t most_at_a_time_ = 1;
   std::vector<Group> groups_;
-  typename Executor::template Buffer<std::uint32_t> heads_, entry_count_;
-  GrowingBuffer<Executor, std::uint32_t> first_entries_;
+  typename Executor::template Buffer<std::uint32_t> heads_, starts_, entry_count_;
+  GrowingBuffer<Executor, std::uint32_t> first_entries_, listed_;
   GrowingBuffer<Executor, BallEntry> entries_;
 };
 

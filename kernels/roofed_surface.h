@@ -43,6 +43,7 @@ struct RadiusMetric {
   AERATE_HD double limit() const { return best.radius; }
 
   AERATE_HD void visit(std::uint32_t i) {
+    if (!may_be_narrower(facets[i])) return;
     const double reach = best.radius + clearance + (1 - roof.sine) * spine;
     if (!is_facet_nearer(foot, facets[i], reach * reach)) return;
     const double radius = radius_within(roof, foot, facets[i], clearance).value;
@@ -50,6 +51,18 @@ struct RadiusMetric {
       best = {radius, i};
       spine = roof.spine(radius);
     }
+  }
+
+ private:
+  // By one corner: from there to any point of the facet the value changes by no more than the way.
+  AERATE_HD bool may_be_narrower(const Facet& facet) const {
+    const Vec3d corner = to_double(facet.a);
+    const double extent_squared =
+        max_of(length_squared(to_double(facet.b) - corner), length_squared(to_double(facet.c) - corner));
+    const roof_detail::Profile profile = roof_detail::profile_of_point(foot, roof.up, corner);
+    const double height = roof_detail::FixedSpine{roof.sine, spine}.height(profile);
+    const double excess = profile.distance(height) + height * roof.sine - clearance - best.radius;
+    return excess <= 0 || excess * excess <= extent_squared * (1 + 1e-9);
   }
 };
 
@@ -76,6 +89,12 @@ struct DistanceMetric {
 // `best`, whose radius must be finite and more than -clearance.
 AERATE_HD inline WidestVoid narrower_than(const TriangleBvhView& surface, const Roof& roof, Vec3d foot,
                                           double clearance, WidestVoid best) {
+  if (!roof.shapes(best.radius)) {
+    const double reach = max_of(best.radius + clearance, 0.0);
+    const NearestFacet nearest = surface.nearest(foot, reach * reach);
+    if (nearest.facet == kNone) return best;
+    return {std::sqrt(nearest.distance_squared) - clearance, nearest.facet};
+  }
   roofed_surface_detail::RadiusMetric metric{roof,          foot, clearance, best, roof.spine(best.radius),
                                              surface.facets};
   surface.walk(metric);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <tbb/parallel_for.h>
+#include <utility>
 #include <vector>
 
 #include "printing/full_infill.h"
@@ -45,7 +46,8 @@ struct Layers {
   bool prints_in_modifiers = false;
   LayerRaster raster;
   ShellRules rules;
-  double step = 1;  // mm
+  double reach = 1;  // mm, of what is known of depths
+  double step = 1;   // mm
   int wall = 1, fill = 1, widened_walls = 0, lean = 0, shadow = 0, least_shell = 0, widening = 0,
       half_line = 0, skin_margin = 0, skin_shadow = 0;
   int near = 0;  // of an edge that may pass between this pixel and the next
@@ -193,13 +195,14 @@ double rim_of(const LayerSlice& slice, const LayerRaster& raster) {
   return rim;
 }
 
-Layers layers_of(const Mesh& mesh, const LayerRaster& raster, const PrintSettings& settings) {
+// Without what the model has in them.
+Layers empty_layers(const LayerRaster& raster, const PrintSettings& settings) {
   Layers layers;
   layers.raster = raster;
   const ShellRules& rules = layers.rules = shell_rules(settings);
   // As deep as has to be known: a shell's width, where the sparse infill that it reaches into begins.
-  const double reach = rules.wall + rules.least_shell + rules.widening + rules.spacing / 2;
-  layers.step = reach / kSteps;
+  layers.reach = rules.wall + rules.least_shell + rules.widening + rules.spacing / 2;
+  layers.step = layers.reach / kSteps;
   layers.wall = 1 + layers.steps(rules.wall);
   layers.fill = 1 + layers.steps(rules.fill);
   layers.widened_walls = layers.steps(rules.widened_walls);
@@ -214,19 +217,18 @@ Layers layers_of(const Mesh& mesh, const LayerRaster& raster, const PrintSetting
   layers.depths.resize(raster.layer_count);
   layers.contour_lengths.resize(raster.layer_count);
   layers.rims.resize(raster.layer_count);
-  const LayerSlicer slicer(mesh, raster);
-  tbb::parallel_for(std::size_t{0}, raster.layer_count, [&](std::size_t k) {
-    LayerSlice slice = slicer.slice(k, reach);
-    layers.rims[k] = rim_of(slice, raster);
-    for (std::size_t i = 0; i < slice.inside.size(); ++i) {
-      const double steps = static_cast<double>(slice.depth[i]) / layers.step;
-      if (slice.inside[i] != 0)
-        slice.inside[i] = static_cast<std::uint8_t>(1 + std::min<double>(kSteps, steps));
-    }
-    layers.depths[k] = with_widened_walls(slice.inside, layers);
-    layers.contour_lengths[k] = slice.contour_length;
-  });
   return layers;
+}
+
+void set_layer(Layers& layers, std::size_t k, LayerSlice slice) {
+  layers.rims[k] = rim_of(slice, layers.raster);
+  for (std::size_t i = 0; i < slice.inside.size(); ++i) {
+    const double steps = static_cast<double>(slice.depth[i]) / layers.step;
+    if (slice.inside[i] != 0)
+      slice.inside[i] = static_cast<std::uint8_t>(1 + std::min<double>(kSteps, steps));
+  }
+  layers.depths[k] = with_widened_walls(slice.inside, layers);
+  layers.contour_lengths[k] = slice.contour_length;
 }
 
 void add_modifiers(Layers& layers, const Mesh& mesh, const PrintSettings& settings) {
@@ -648,12 +650,46 @@ FilamentUse operator-(const FilamentUse& a, const FilamentUse& b) {
   return sum(a, b, -1);
 }
 
-FilamentUse filament_use(const Mesh& upright, const PrintSettings& settings, double pixel,
-                         const Mesh& modifiers) {
-  if (upright.triangles.empty()) return {};
+struct SlicedPrint::Impl {
+  Layers layers;
+};
+
+SlicedPrint::SlicedPrint(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SlicedPrint::~SlicedPrint() = default;
+SlicedPrint::SlicedPrint(SlicedPrint&&) noexcept = default;
+SlicedPrint& SlicedPrint::operator=(SlicedPrint&&) noexcept = default;
+
+SlicedPrint SlicedPrint::of(const Mesh& upright, const PrintSettings& settings, double pixel) {
   const Mesh mesh = turned(upright);
-  Layers layers = layers_of(mesh, raster_of(mesh, pixel, settings.layer_height, kMostPixels), settings);
-  add_modifiers(layers, turned(modifiers), settings);
+  const LayerRaster raster = raster_of(mesh, pixel, settings.layer_height, kMostPixels);
+  auto impl = std::make_unique<Impl>(Impl{empty_layers(raster, settings)});
+  const LayerSlicer slicer(mesh, raster);
+  tbb::parallel_for(std::size_t{0}, raster.layer_count,
+                    [&](std::size_t k) { set_layer(impl->layers, k, slicer.slice(k, impl->layers.reach)); });
+  return SlicedPrint(std::move(impl));
+}
+
+std::pair<SlicedPrint, SlicedPrint> SlicedPrint::of_both(const Mesh& upright, std::size_t outer_triangles,
+                                                         const PrintSettings& settings, double pixel) {
+  const Mesh mesh = turned(upright);
+  const LayerRaster raster = raster_of(mesh, pixel, settings.layer_height, kMostPixels);
+  auto whole = std::make_unique<Impl>(Impl{empty_layers(raster, settings)});
+  auto hollow = std::make_unique<Impl>(Impl{empty_layers(raster, settings)});
+  const LayerSlicer slicer(mesh, raster);
+  tbb::parallel_for(std::size_t{0}, raster.layer_count, [&](std::size_t k) {
+    auto slices = slicer.slices(k, whole->layers.reach, outer_triangles);
+    set_layer(whole->layers, k, std::move(slices.first));
+    set_layer(hollow->layers, k, std::move(slices.second));
+  });
+  return {SlicedPrint(std::move(whole)), SlicedPrint(std::move(hollow))};
+}
+
+void SlicedPrint::add_modifiers(const Mesh& modifiers, const PrintSettings& settings) {
+  aerate::add_modifiers(impl_->layers, turned(modifiers), settings);
+}
+
+FilamentUse SlicedPrint::use() const {
+  const Layers& layers = impl_->layers;
   const std::size_t count = layers.depths.size();
   std::vector<Pixels> skins(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) { skins[k] = skins_of(layers, k); });
@@ -663,6 +699,14 @@ FilamentUse filament_use(const Mesh& upright, const PrintSettings& settings, dou
   FilamentUse total;
   for (const FilamentUse& use : uses) total = total + use;
   return total;
+}
+
+FilamentUse filament_use(const Mesh& upright, const PrintSettings& settings, double pixel,
+                         const Mesh& modifiers) {
+  if (upright.triangles.empty()) return {};
+  SlicedPrint print = SlicedPrint::of(upright, settings, pixel);
+  print.add_modifiers(modifiers, settings);
+  return print.use();
 }
 
 }  // namespace aerate

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
+#include <utility>
+
 #include "core/mesh.h"
 #include "printing/print_settings.h"
 
@@ -30,12 +34,36 @@ FilamentUse operator-(const FilamentUse& a, const FilamentUse& b);
 // Edge of a raster's pixels, mm.
 inline constexpr double kFilamentPixel = 0.5;
 
+// A print whose layers are cut, so that what it takes can be asked for with modifiers and without. All meshes are printed
+// upwards along z, closed, outer surface and inward voids alike, and have triangles.
+class SlicedPrint {
+ public:
+  //   pixel: edge of a pixel, mm, where the model is not so large that it has to be coarser
+  static SlicedPrint of(const Mesh& mesh, const PrintSettings& settings, double pixel = kFilamentPixel);
+  // Without its voids, and with them: the outer surface, which is the mesh's first triangles, is cut once for both.
+  static std::pair<SlicedPrint, SlicedPrint> of_both(const Mesh& mesh, std::size_t outer_triangles,
+                                                     const PrintSettings& settings,
+                                                     double pixel = kFilamentPixel);
+  ~SlicedPrint();
+  SlicedPrint(SlicedPrint&&) noexcept;
+  SlicedPrint& operator=(SlicedPrint&&) noexcept;
+
+  // In these, closed and outward, infill is that of modifiers. Its lines end at their border and are joined along it, and on
+  // the other side so are those of the rest. None if there are no triangles.
+  void add_modifiers(const Mesh& modifiers, const PrintSettings& settings);
+
+  FilamentUse use() const;
+
+ private:
+  struct Impl;
+  explicit SlicedPrint(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
 // Filament for a closed mesh (outer surface and inward voids alike) that is printed upwards along z. Layer by
 // layer on a raster, with the exact distance of each pixel's centre from the contour: O(triangles + pixels);
 // the number of threads does not change the result.
-//   modifiers: closed and outward; in them infill is that of modifiers. Its lines end at their border and are
-//              joined along it, and on the other side so are those of the rest.
-//   pixel: edge of a pixel, mm, where the model is not so large that it has to be coarser
+//   modifiers, pixel: see SlicedPrint
 FilamentUse filament_use(const Mesh& mesh, const PrintSettings& settings, double pixel = kFilamentPixel,
                          const Mesh& modifiers = {});
 

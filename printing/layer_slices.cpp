@@ -50,6 +50,16 @@ std::pair<std::size_t, std::size_t> pixels_between(double lower, double upper, d
   return {at(lower), at(upper)};
 }
 
+// Added to a length, mm.
+template <typename Segments>
+double total_length(const Segments& segments, double length) {
+  for (const auto& s : segments) {
+    const double x = s.bx - s.ax, y = s.by - s.ay;
+    length += std::sqrt(x * x + y * y);
+  }
+  return length;
+}
+
 }  // namespace
 
 LayerRaster raster_of(const Mesh& mesh, double pixel, double layer_height, double most_pixels) {
@@ -87,24 +97,49 @@ LayerSlicer::LayerSlicer(const Mesh& mesh, const LayerRaster& raster) : mesh_(me
   }
 }
 
-LayerSlice LayerSlicer::slice(std::size_t layer, double reach) const {
+LayerSlice LayerSlicer::empty_slice() const {
   LayerSlice slice;
   slice.inside.assign(raster_.pixels(), 0);
   slice.depth.assign(raster_.pixels(), std::numeric_limits<float>::infinity());
-  const std::vector<Segment> segments =
-      contour(raster_.first_z + static_cast<double>(layer) * raster_.layer_height, layer);
-  fill(segments, slice);
-  measure_depth(segments, reach, slice);
-  for (const Segment& s : segments) {
-    const double x = s.bx - s.ax, y = s.by - s.ay;
-    slice.contour_length += std::sqrt(x * x + y * y);
-  }
   return slice;
 }
 
-std::vector<LayerSlicer::Segment> LayerSlicer::contour(double z, std::size_t layer) const {
+LayerSlice LayerSlicer::slice(std::size_t layer, double reach) const {
+  LayerSlice slice = empty_slice();
+  const std::vector<Segment> segments = contour(layer, 0, mesh_.triangles.size());
+  fill(segments, slice);
+  measure_squares(segments, reach, slice);
+  finish_depths(reach, slice);
+  slice.contour_length = total_length(segments, 0);
+  return slice;
+}
+
+std::pair<LayerSlice, LayerSlice> LayerSlicer::slices(std::size_t layer, double reach,
+                                                      std::size_t first_triangles) const {
+  LayerSlice first = empty_slice();
+  std::vector<Segment> segments = contour(layer, 0, first_triangles);
+  fill(segments, first);
+  measure_squares(segments, reach, first);
+  first.contour_length = total_length(segments, 0);
+
+  const std::vector<Segment> others = contour(layer, first_triangles, mesh_.triangles.size());
+  LayerSlice all = first;
+  measure_squares(others, reach, all);
+  finish_depths(reach, first);
+  finish_depths(reach, all);
+  all.contour_length = total_length(others, first.contour_length);
+  segments.insert(segments.end(), others.begin(), others.end());
+  std::fill(all.inside.begin(), all.inside.end(), std::uint8_t{0});
+  fill(segments, all);
+  return {std::move(first), std::move(all)};
+}
+
+std::vector<LayerSlicer::Segment> LayerSlicer::contour(std::size_t layer, std::size_t first,
+                                                       std::size_t last) const {
+  const double z = raster_.first_z + static_cast<double>(layer) * raster_.layer_height;
   std::vector<Segment> segments;
   for (std::uint32_t i = offsets_[layer]; i < offsets_[layer + 1]; ++i) {
+    if (references_[i] < first || references_[i] >= last) continue;
     const Triangle& triangle = mesh_.triangles[references_[i]];
     const Vec3d corner[3] = {to_double(mesh_.positions[triangle[0]]), to_double(mesh_.positions[triangle[1]]),
                              to_double(mesh_.positions[triangle[2]])};
@@ -155,7 +190,8 @@ void LayerSlicer::fill(const std::vector<Segment>& contour, LayerSlice& slice) c
   }
 }
 
-void LayerSlicer::measure_depth(const std::vector<Segment>& contour, double reach, LayerSlice& slice) const {
+void LayerSlicer::measure_squares(const std::vector<Segment>& contour, double reach,
+                                  LayerSlice& slice) const {
   // In single precision and without branches, for pixels outside too: the inner loop is all that takes time.
   const auto pixel = static_cast<float>(raster_.pixel);
   for (const Segment& s : contour) {
@@ -184,6 +220,9 @@ void LayerSlicer::measure_depth(const std::vector<Segment>& contour, double reac
       }
     }
   }
+}
+
+void LayerSlicer::finish_depths(double reach, LayerSlice& slice) {
   const auto reach_squared = static_cast<float>(reach * reach);
   for (float& depth : slice.depth)
     depth = depth < reach_squared ? std::sqrt(depth) : std::numeric_limits<float>::infinity();

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/mesh.h"
@@ -40,13 +41,21 @@ class LayerSlicer {
   // O(pixels + triangles that cross the layer). Called from any thread.
   LayerSlice slice(std::size_t layer, double reach) const;
 
+  // The same of the mesh's first `first_triangles` triangles alone, and of all: what both have is measured once.
+  std::pair<LayerSlice, LayerSlice> slices(std::size_t layer, double reach,
+                                           std::size_t first_triangles) const;
+
  private:
   struct Segment {
     double ax, ay, bx, by;  // the solid is on the left
   };
-  std::vector<Segment> contour(double z, std::size_t layer) const;
+  // Of the layer's triangles, in the mesh's order, those from number `first` on, and before number `last`.
+  std::vector<Segment> contour(std::size_t layer, std::size_t first, std::size_t last) const;
+  LayerSlice empty_slice() const;
   void fill(const std::vector<Segment>& contour, LayerSlice& slice) const;
-  void measure_depth(const std::vector<Segment>& contour, double reach, LayerSlice& slice) const;
+  // Lowers the squares of the depths to those from these segments.
+  void measure_squares(const std::vector<Segment>& contour, double reach, LayerSlice& slice) const;
+  static void finish_depths(double reach, LayerSlice& slice);
 
   const Mesh& mesh_;
   LayerRaster raster_;

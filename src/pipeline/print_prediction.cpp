@@ -82,11 +82,42 @@ const Mesh& upright(const Mesh& mesh, const UprightFrame& frame, Mesh& turned) {
   return turned;
 }
 
-FilamentUse use_with_voids(const Mesh& outer, const Solid& solid, const UprightFrame& frame,
-                           const HollowOptions& options, const PrintSettings& settings) {
+// What is cut of a print for its prediction.
+struct Prints {
+  SlicedPrint whole;
+  FilamentUse whole_use, hollow_use;
+};
+
+// The solid's outer surface is as a rule the model's, triangle by triangle.
+std::pair<SlicedPrint, SlicedPrint> whole_and_hollow(const Mesh& outer, const Mesh& solid,
+                                                     std::size_t outer_triangles,
+                                                     const PrintSettings& settings) {
+  const bool is_the_same =
+      outer_triangles == outer.triangles.size() && outer.positions.size() <= solid.positions.size() &&
+      std::equal(outer.triangles.begin(), outer.triangles.end(), solid.triangles.begin()) &&
+      std::equal(outer.positions.begin(), outer.positions.end(), solid.positions.begin());
+  if (is_the_same) return SlicedPrint::of_both(solid, outer_triangles, settings);
+  return {SlicedPrint::of(outer, settings), SlicedPrint::of(solid, settings)};
+}
+
+// `outer`: as it is printed.
+Prints prints_of(const Mesh& outer, const Solid& solid, const UprightFrame& frame,
+                 const HollowOptions& options, const PrintSettings& settings, Monitor& monitor) {
   Mesh turned;
-  if (!options.modifiers) return filament_use(upright(solid.mesh, frame, turned), settings);
-  return filament_use(outer, settings, kFilamentPixel, upright(voids_of(solid), frame, turned));
+  if (options.modifiers) {
+    SlicedPrint print = SlicedPrint::of(outer, settings);
+    const FilamentUse whole_use = print.use();
+    monitor.check_interrupted();
+    print.add_modifiers(upright(voids_of(solid), frame, turned), settings);
+    const FilamentUse hollow_use = print.use();
+    return {std::move(print), whole_use, hollow_use};
+  }
+  auto [whole, hollow] =
+      whole_and_hollow(outer, upright(solid.mesh, frame, turned), solid.outer_triangle_count(), settings);
+  monitor.check_interrupted();
+  const FilamentUse whole_use = whole.use();
+  monitor.check_interrupted();
+  return {std::move(whole), whole_use, hollow.use()};
 }
 
 FilamentChange change_at(double infill, const FilamentUse& whole, const FilamentUse& hollow,
@@ -95,15 +126,13 @@ FilamentChange change_at(double infill, const FilamentUse& whole, const Filament
   return {infill, whole.volume_mm3(settings), hollow.volume_mm3(settings)};
 }
 
-// How much more a print takes with the voids as modifiers of 0 % infill, as a share. `outer`, and what was found of
-// it: as it is printed.
-double change_as_modifiers(const Mesh& outer, const FilamentUse& whole, const Solid& solid,
-                           const UprightFrame& frame, PrintSettings settings, double infill) {
+// How much more a print takes with the voids as modifiers of 0 % infill, as a share. Adds these to what is cut.
+double change_as_modifiers(Prints& prints, const Solid& solid, const UprightFrame& frame,
+                           PrintSettings settings, double infill) {
   settings.modifier_infill = 0;
   Mesh turned;
-  const FilamentUse modified =
-      filament_use(outer, settings, kFilamentPixel, upright(voids_of(solid), frame, turned));
-  return change_at(infill, whole, modified, settings).share();
+  prints.whole.add_modifiers(upright(voids_of(solid), frame, turned), settings);
+  return change_at(infill, prints.whole_use, prints.whole.use(), settings).share();
 }
 
 std::string what_else(const PrintPrediction& prediction, const HollowOptions& options) {
@@ -199,9 +228,8 @@ std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& sol
   const UprightFrame frame(packing.limits.roof.up);
   Mesh turned;
   const Mesh& printed = upright(outer, frame, turned);
-  const FilamentUse whole = filament_use(printed, settings);
-  monitor.check_interrupted();
-  const FilamentUse hollow = use_with_voids(printed, solid, frame, options, settings);
+  Prints prints = prints_of(printed, solid, frame, options, settings, monitor);
+  const FilamentUse &whole = prints.whole_use, &hollow = prints.hollow_use;
   monitor.check_interrupted();
   prediction.filament_before_mm3 = whole.volume_mm3(settings);
   prediction.filament_after_mm3 = hollow.volume_mm3(settings);
@@ -215,7 +243,7 @@ std::optional<PrintPrediction> predict_print(const Mesh& outer, const Solid& sol
   prediction.solid = change_at(1, whole, hollow, settings);
   // Voids that drain are no bodies by themselves.
   if (prediction.usual.heavier() && !options.modifiers && !options.drainage)
-    prediction.as_modifiers = change_as_modifiers(printed, whole, solid, frame, settings, infill);
+    prediction.as_modifiers = change_as_modifiers(prints, solid, frame, settings, infill);
   monitor.check_interrupted();
 
   return prediction;

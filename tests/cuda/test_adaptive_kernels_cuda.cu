@@ -147,14 +147,17 @@ TEST_F(AdaptiveKernelsCuda, QueriesOfTheField) {
 
 // The balls that each cell names, in the order of their numbers: that of the lists is free.
 template <typename Executor>
-std::vector<std::vector<std::uint32_t>> cells_of_grid(const Executor& executor, const Job& job) {
-  Packed<Executor> packed(executor, job);
-  packed.grid.reset(job.input.box, kReach / 3, kGap, 64);  // cells so small that some lie within balls
-  const BallGridView<BallShape> grid = packed.grid.view();
+std::vector<std::vector<std::uint32_t>> cells_of(const Executor& executor,
+                                                 const BallGridView<BallShape>& grid) {
   const auto entries = executor.download(View<const BallEntry>(grid.entries));
+  const auto heads = executor.download(View<const std::uint32_t>(grid.heads));
+  const auto starts = executor.download(grid.starts);
+  const auto listed = executor.download(grid.listed);
   std::vector<std::vector<std::uint32_t>> cells;
-  for (const std::uint32_t head : executor.download(View<const std::uint32_t>(grid.heads))) {
-    std::vector<std::uint32_t> cell;
+  cells.reserve(heads.size());
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    std::vector<std::uint32_t> cell(listed.begin() + starts.at(k), listed.begin() + starts.at(k + 1));
+    const std::uint32_t head = heads[k];
     if (head != kNone && (head & BallGridView<BallShape>::kInsideBit) != 0) {
       cell.push_back(head);
     } else {
@@ -164,6 +167,32 @@ std::vector<std::vector<std::uint32_t>> cells_of_grid(const Executor& executor, 
     cells.push_back(cell);
   }
   return cells;
+}
+
+constexpr double kReachOfSmallCells = kReach / 3;  // so small that some lie within balls
+
+// All balls listed.
+template <typename Executor>
+std::vector<std::vector<std::uint32_t>> cells_of_grid(const Executor& executor, const Job& job) {
+  Packed<Executor> packed(executor, job);
+  packed.grid.reset(job.input.box, kReachOfSmallCells, kGap, 64);
+  EXPECT_EQ(packed.grid.view().entries.size, 0U);
+  return cells_of(executor, packed.grid.view());
+}
+
+// Most balls listed, and the last few linked.
+template <typename Executor>
+std::vector<std::vector<std::uint32_t>> cells_with_latecomers(const Executor& executor, const Job& job) {
+  const std::size_t early = job.balls.size() - 5;
+  Packed<Executor> packed(executor, job);
+  BallGrid<Executor> grid(executor);
+  grid.reset(job.input.box, kReachOfSmallCells, kGap, 64);
+  grid.enter({packed.balls.view().data, early}, 0, job.balls.front().radius);
+  grid.reset(job.input.box, kReachOfSmallCells, kGap, 64);
+  EXPECT_GT(grid.view().listed.size, 0U);
+  grid.enter(packed.balls.view(), early, job.balls.front().radius);
+  EXPECT_GT(grid.view().entries.size, 0U);
+  return cells_of(executor, grid.view());
 }
 
 TEST_F(AdaptiveKernelsCuda, GridOfBalls) {
@@ -176,6 +205,12 @@ TEST_F(AdaptiveKernelsCuda, GridOfBalls) {
   EXPECT_GT(std::count_if(expected.begin(), expected.end(), shared), 5);
   EXPECT_GT(std::count_if(expected.begin(), expected.end(), inside), 5);
   EXPECT_EQ(cells_of_grid(CudaExecutor(0), job), expected);
+}
+
+// A cell that turned out to lie within a ball only later may name others beside it, which no query sees.
+TEST_F(AdaptiveKernelsCuda, GridOfBallsWithLatecomers) {
+  const Job job;
+  EXPECT_EQ(cells_with_latecomers(CudaExecutor(0), job), cells_with_latecomers(SerialExecutor{}, job));
 }
 
 // The tree of cells after each kernel that handles it.
