@@ -197,6 +197,8 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
   int restarts = 0, steps_below = 0;
   for (int step_count = 0; step_count < kMostSteps; ++step_count) {
     four.enter(here, p);
+    // The same again, so that a device need not keep them in registers while it looks for what is nearest.
+    if constexpr (!Shape::kIsBall) four.move_to(p);
     for (int k = 0; k < 2; ++k) {
       if (!four.solve()) return best;
       Vec3d step = four.step();

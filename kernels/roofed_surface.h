@@ -43,9 +43,8 @@ struct RadiusMetric {
   AERATE_HD double limit() const { return best.radius; }
 
   AERATE_HD void visit(std::uint32_t i) {
-    if (!may_be_narrower(facets[i])) return;
     const double reach = best.radius + clearance + (1 - roof.sine) * spine;
-    if (!is_facet_nearer(foot, facets[i], reach * reach)) return;
+    if (!is_facet_nearer(foot, facets[i], reach * reach) || !may_be_narrower(facets[i])) return;
     const double radius = radius_within(roof, foot, facets[i], clearance).value;
     if (radius < best.radius) {
       best = {radius, i};
@@ -89,12 +88,6 @@ struct DistanceMetric {
 // `best`, whose radius must be finite and more than -clearance.
 AERATE_HD inline WidestVoid narrower_than(const TriangleBvhView& surface, const Roof& roof, Vec3d foot,
                                           double clearance, WidestVoid best) {
-  if (!roof.shapes(best.radius)) {
-    const double reach = max_of(best.radius + clearance, 0.0);
-    const NearestFacet nearest = surface.nearest(foot, reach * reach);
-    if (nearest.facet == kNone) return best;
-    return {std::sqrt(nearest.distance_squared) - clearance, nearest.facet};
-  }
   roofed_surface_detail::RadiusMetric metric{roof,          foot, clearance, best, roof.spine(best.radius),
                                              surface.facets};
   surface.walk(metric);

@@ -43,6 +43,7 @@ struct Layers {
   std::vector<double> rims;  // pixels that are to be added, since pixels on the contour are in or out
   // By how far a pixel is inside a modifier; empty where there are none.
   std::vector<std::vector<std::int8_t>> modifiers;
+  std::array<int, kFarFromBorder + 1> border_steps{};  // a distance from the border in steps of depths
   bool prints_in_modifiers = false;
   LayerRaster raster;
   ShellRules rules;
@@ -214,6 +215,8 @@ Layers empty_layers(const LayerRaster& raster, const PrintSettings& settings) {
   layers.skin_margin = layers.steps(rules.skin_margin);
   layers.skin_shadow = layers.steps(rules.skin_shadow);
   layers.near = 1 + std::min(layers.steps(kNearest * raster.pixel), kSteps - layers.fill);
+  for (std::size_t i = 0; i < layers.border_steps.size(); ++i)
+    layers.border_steps[i] = layers.steps(static_cast<double>(i) / kBorderSteps);
   layers.depths.resize(raster.layer_count);
   layers.contour_lengths.resize(raster.layer_count);
   layers.rims.resize(raster.layer_count);
@@ -496,7 +499,7 @@ Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
         if (from_shell < layers.half_line + band && from_shell < from_edge && is_kept(row, column, i))
           from_edge = from_shell;
         const int inside = layers.in_modifier(k, i);
-        const int from_border = layers.steps(std::abs(inside) / kBorderSteps);
+        const int from_border = layers.border_steps[static_cast<std::size_t>(std::abs(inside))];
         const bool at_border =
             std::abs(inside) < kFarFromBorder - 1 && from_edge >= 0 && from_border < from_edge;
         if (at_border) from_edge = from_border;
@@ -563,6 +566,7 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
   double wall = layers.rims[k];
   std::size_t web = 0;
   std::array<Infill, 2> infill;
+  const int half_pixel = 2 + layers.steps(raster.pixel / 2);  // or a little more
   // The first and the last pixels of rows and columns are outside.
   const std::size_t columns = raster.count_x;
   for (std::size_t i = columns; i + columns < layer.parts.size(); ++i) {
@@ -570,13 +574,16 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
     if (part == Part::outside) continue;
     const std::uint8_t depth = layers.depths[k][i];
     const bool is_web = layers.is_wall(depth) && is_of_web(layers, k, i);
-    const auto beyond = [&](int line) { return (depth + 0.5 - line) * layers.step / raster.pixel; };
+    const auto rest_beyond = [&](int line) {
+      if (std::abs(depth - line) > half_pixel) return 0.0;
+      return rest_of_pixel((depth + 0.5 - line) * layers.step / raster.pixel);
+    };
     Infill& here = infill[layers.is_modified(k, i) ? 1 : 0];
     if (layers.is_wall(depth)) ++wall;
     if (is_web) ++web;
     if (!is_web) {
-      wall -= rest_of_pixel(beyond(layers.wall));
-      here.fill += rest_of_pixel(beyond(layers.fill));
+      wall -= rest_beyond(layers.wall);
+      here.fill += rest_beyond(layers.fill);
     }
     if (part == Part::wall) continue;
     ++here.fill;
