@@ -85,6 +85,31 @@ PrismPair prisms_of_window(const Tube& tube, const TubeShape& shape) {
   return prisms_of(tube, half, half, half, shape);
 }
 
+// How far starts of lines along a tube are from its axis at most.
+double reach_across(const std::vector<Vec3d>& starts, const Tube& tube) {
+  double reach = 0;
+  for (const Vec3d start : starts) reach = std::max(reach, length(start - tube.start));
+  return reach;
+}
+
+// Facets that may come as near to a segment, by their boxes.
+std::vector<kernels::Facet> facets_about(const Mesh& mesh, const Segment& segment, double reach) {
+  constexpr double kSlack = 1e-3;  // mm
+  const Vec3d around{reach + kSlack, reach + kSlack, reach + kSlack};
+  const Vec3d lower = min_of(segment.start, segment.end) - around;
+  const Vec3d upper = max_of(segment.start, segment.end) + around;
+  std::vector<kernels::Facet> facets;
+  for (const Triangle& t : mesh.triangles) {
+    const kernels::Facet facet = facet_of(mesh, t);
+    const Box3f box = kernels::box_of(facet);
+    const Vec3d least = to_double(box.lower), most = to_double(box.upper);
+    if (least.x <= upper.x && least.y <= upper.y && least.z <= upper.z && most.x >= lower.x &&
+        most.y >= lower.y && most.z >= lower.z)
+      facets.push_back(facet);
+  }
+  return facets;
+}
+
 // nullopt if no plane across the hole lies between the void's surface and the model's.
 std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::uint32_t> near_outside,
                                         const Mesh& from, const Tube& tube, const TubeShape& shape) {
@@ -92,11 +117,13 @@ std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::
   const double farthest = length(tube.end - tube.start) + kCutBeyond * tube.radius;
   std::vector<Vec3d> starts = section_of(tube, shape);
   starts.push_back(tube.start);
+  const std::vector<kernels::Facet> near = facets_about(
+      from, {tube.start - axis * tube.radius, tube.start + axis * farthest}, reach_across(starts, tube));
   Passage out_of_void, outside;
   for (const Vec3d start : starts) {
     Passage line;
-    for (const Triangle& t : from.triangles) {
-      const auto along = passes(start, axis, facet_of(from, t));
+    for (const kernels::Facet& facet : near) {
+      const auto along = passes(start, axis, facet);
       if (along && *along > -tube.radius && *along < farthest) line.add(*along);
     }
     if (line.last < line.first) return std::nullopt;

@@ -104,13 +104,10 @@ class CeilingFinder {
   }
 
   bool has_ball_at(Vec3d p) const {
-    const NodeBox& box = nodes_.box;
-    const Vec3d place = (p - box.at(0, 0, 0)) * (1 / box.lattice.spacing);
-    const auto i = static_cast<std::int32_t>(std::lround(place.x));
-    const auto j = static_cast<std::int32_t>(std::lround(place.y));
-    const auto k = static_cast<std::int32_t>(std::lround(place.z));
-    if (i < 0 || j < 0 || k < 0 || i >= box.count_x || j >= box.count_y || k >= box.count_z) return false;
-    const std::size_t node = box.index(i, j, k);
+    const auto nearest = nodes_.box.nearest(p);
+    if (!nearest) return false;
+    const auto [i, j, k] = *nearest;
+    const std::size_t node = nodes_.box.index(i, j, k);
     return labels_[node] == piece_ && nodes_.has_ball(node);
   }
 
@@ -254,9 +251,11 @@ class TentFinder {
     for (std::size_t node = 0; node < box.size(); ++node) count += is_in(node) ? 1U : 0U;
     std::int32_t step = 1;
     while (count / static_cast<std::size_t>(step * step * step) > kMost) ++step;
-    for (std::int32_t k = 0; k < box.count_z; k += step) {
-      for (std::int32_t j = 0; j < box.count_y; j += step) {
-        for (std::int32_t i = 0; i < box.count_x; i += step)
+    // The same ones in whatever part of the box.
+    const auto first = [step](std::int32_t cut) { return (step - cut % step) % step; };
+    for (std::int32_t k = first(box.cut_z); k < box.count_z; k += step) {
+      for (std::int32_t j = first(box.cut_y); j < box.count_y; j += step) {
+        for (std::int32_t i = first(box.cut_x); i < box.count_x; i += step)
           if (is_in(box.index(i, j, k))) samples_.push_back(frame_.to_frame(box.at(i, j, k)));
       }
     }

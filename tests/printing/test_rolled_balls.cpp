@@ -70,12 +70,11 @@ TEST(CellNodes, SquaredDistancesAreThoseToTheNearestNodeOfTheSet) {
   box.count_z = 8;
   const std::vector<std::array<std::int32_t, 3>> set{{1, 2, 3}, {7, 5, 6}, {8, 0, 0}};
   constexpr std::int32_t kMost = 4;
-  const std::vector<std::int32_t> squared = squared_distances(
-      box,
-      [&](std::size_t node) {
-        return std::ranges::any_of(set, [&](const auto& p) { return box.index(p[0], p[1], p[2]) == node; });
-      },
-      kMost);
+  std::vector<std::uint8_t> is_in_set(box.size(), 0);
+  for (const auto& [x, y, z] : set) is_in_set[box.index(x, y, z)] = 1;
+  Monitor silent;
+  SharedWork work(silent);
+  const std::vector<std::int32_t> squared = squared_distances(box, is_in_set, kMost, work);
   int near = 0;
   for (std::int32_t k = 0; k < box.count_z; ++k) {
     for (std::int32_t j = 0; j < box.count_y; ++j) {
