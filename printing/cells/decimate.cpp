@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -91,7 +94,7 @@ class Decimation {
       }
     }
     work.check_interrupted();
-    std::sort(candidates_.begin(), candidates_.end());
+    sort_by_cost();
     work.check_interrupted();
     busy_.assign(points_.size(), 0);
     renamed_.resize(points_.size());
@@ -136,6 +139,33 @@ class Decimation {
   }
 
  private:
+  // By digits of the cost's bits, which of floats that are not negative ascend with these; then those of the same cost.
+  void sort_by_cost() {
+    constexpr unsigned kDigitBits = 11, kDigits = 3;
+    constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
+    const auto digit = [](const Collapse& c, unsigned n) {
+      return std::bit_cast<std::uint32_t>(c.cost) >> (n * kDigitBits) & (kValues - 1);
+    };
+    std::array<std::array<std::size_t, kValues>, kDigits> next{};
+    for (const Collapse& c : candidates_)
+      for (unsigned n = 0; n < kDigits; ++n) ++next[n][digit(c, n)];
+    sorted_.resize(candidates_.size());
+    for (unsigned n = 0; n < kDigits; ++n) {
+      std::size_t before = 0;
+      for (std::size_t& count : next[n]) before += std::exchange(count, before);
+      for (const Collapse& c : candidates_) sorted_[next[n][digit(c, n)]++] = c;
+      std::swap(candidates_, sorted_);
+    }
+    for (std::size_t first = 0; first < candidates_.size();) {
+      std::size_t last = first + 1;
+      while (last < candidates_.size() && candidates_[last].cost == candidates_[first].cost) ++last;
+      if (last > first + 1)
+        std::sort(candidates_.begin() + static_cast<std::ptrdiff_t>(first),
+                  candidates_.begin() + static_cast<std::ptrdiff_t>(last));
+      first = last;
+    }
+  }
+
   Vec3d doubled_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     return cross(points_[b] - points_[a], points_[c] - points_[a]);
   }
@@ -233,7 +263,7 @@ class Decimation {
   std::vector<Vec3d> points_;
   std::vector<Quadric> quadrics_;
   std::vector<std::uint32_t> first_, around_, renamed_;
-  std::vector<Collapse> candidates_;
+  std::vector<Collapse> candidates_, sorted_;
   std::vector<char> busy_;
   std::vector<double> deviation_;  // by vertex: of what went into it
   double most_ = 0;

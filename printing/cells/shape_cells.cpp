@@ -1,6 +1,7 @@
 #include "printing/cells/shape_cells.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
@@ -316,21 +317,28 @@ class CellShaper {
     const kernels::HostTriangleBvh bvh(positions, fewer.triangles);
     work_.check_interrupted();
     const NearFacets facets(bvh.view());
-    std::vector<double> squared(dense.vertices.size(), 0);
+    // Only the largest distance counts: a vertex that is known to be no farther off is not looked at any further.
+    std::atomic<double> largest = 0;
     constexpr std::size_t kGrain = 512;
-    work_.for_each_part(squared.size(), kGrain, [&](std::size_t first, std::size_t last) {
-      kernels::NearestFacet near{kInfinity, kNone};
+    work_.for_each_part(dense.vertices.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      std::uint32_t facet = kNone;
       for (std::size_t v = first; v < last; ++v) {
         if (is_left[v] != 0) continue;
         // Vertices that follow each other are near each other.
         const Vec3d at = dense.vertices[v].at;
-        if (near.facet != kNone)
-          near.distance_squared = kernels::distance_squared_to_facet(at, facets.facet(near.facet));
+        kernels::NearestFacet near{kInfinity, facet};
+        if (facet != kNone)
+          near.distance_squared = kernels::distance_squared_to_facet(at, facets.facet(facet));
+        double known = largest.load(std::memory_order_relaxed);
+        if (near.distance_squared <= known) continue;
         near = facets.nearer_than(at, near);
-        squared[v] = near.distance_squared;
+        facet = near.facet;
+        while (near.distance_squared > known &&
+               !largest.compare_exchange_weak(known, near.distance_squared, std::memory_order_relaxed)) {
+        }
       }
     });
-    return std::sqrt(*std::ranges::max_element(squared));
+    return std::sqrt(largest.load());
   }
 
   // Where a void would surround a piece of solid, which would then be loose: the middle of that.
