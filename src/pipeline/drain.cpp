@@ -332,6 +332,7 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
                                  lowest_along(model.mesh, limits.roof.up)};
   std::vector<Tube> refused;
   CellDrainagePlanner planner(drainable, cells, limits, *options.drainage, monitor);
+  CellCarver carver(model.mesh, surface, cells, tolerance);
   // Plans differ in few holes. By void and ends.
   std::map<std::array<double, 7>, bool> known;
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
@@ -347,15 +348,14 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   const auto drained_under = [&](const DrainageRequest& request) -> DrainedCells {
     while (true) {
       PlannedCellDrainage planned = planner.plan(request, can_open, can_open_wall);
-      CellVoids kept = with_only(cells, planned.kept);
-      auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
+      auto carved = carver.carve(planned.kept, planned.plan, monitor);
       auto* solid = std::get_if<Solid>(&carved);
       const std::vector<Tube> unfit =
           solid != nullptr ? tubes_at_wide_ceilings(*solid, planned.plan, limits.roof, tolerance)
                            : tubes_of(std::get<UncutTubes>(carved), planned.plan);
       if (unfit.empty()) {
         DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
-        return {std::move(kept), std::move(voids), std::move(*solid)};
+        return {with_only(cells, planned.kept), std::move(voids), std::move(*solid)};
       }
       for (const Tube& tube : unfit) {
         if (refused.size() >= kMostRefused) throw too_many_refused(tube, solid == nullptr, limits.roof);
