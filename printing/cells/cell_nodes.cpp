@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -229,13 +230,15 @@ CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ba
   return nodes;
 }
 
-CellNodes cut_to_balls(const CellNodes& nodes, const std::vector<float>& depth, const Sphere& own) {
+CellNodes cut_to_balls(const CellNodes& nodes, const std::vector<float>& depth, const Sphere& own,
+                       SharedWork& work) {
   const NodeBox& box = nodes.box;
   CellNodes part;
   part.box.lattice = box.lattice;
   part.ball_radius = nodes.ball_radius;
   part.deepest = nodes.deepest;
-  NodeExtent balls = extent_of(box, [&](std::size_t node) { return depth[node] >= 0; });
+  NodeExtent balls = extent_of(
+      box, [&](std::size_t node) { return depth[node] >= 0; }, work);
   if (balls.is_empty()) return part;
   // How far a ball in an edge is from its node at most, and reaches, in spacings.
   constexpr double kBeyond = 8;
@@ -250,18 +253,19 @@ CellNodes cut_to_balls(const CellNodes& nodes, const std::vector<float>& depth, 
       balls.add(about.grown(in_spacings(own.radius + kBeyond * box.lattice.spacing), box));
   }
   part.box = part_of(box, balls);
-  const auto size = static_cast<std::ptrdiff_t>(part.box.count_x);
-  for (std::int32_t k = balls.first[2]; k <= balls.last[2]; ++k) {
-    for (std::int32_t j = balls.first[1]; j <= balls.last[1]; ++j) {
-      const auto row = static_cast<std::ptrdiff_t>(box.index(balls.first[0], j, k));
-      const auto copy = [&](const auto& from, auto& to) {
-        to.insert(to.end(), from.begin() + row, from.begin() + row + size);
-      };
-      copy(depth, part.depth);
-      copy(nodes.surface_depth, part.surface_depth);
-      copy(nodes.facet, part.facet);
+  const auto copy = [&](const auto& from, auto& to) {
+    to.reserve(part.box.size());
+    for (std::int32_t k = balls.first[2]; k <= balls.last[2]; ++k) {
+      for (std::int32_t j = balls.first[1]; j <= balls.last[1]; ++j) {
+        const auto row = from.begin() + static_cast<std::ptrdiff_t>(box.index(balls.first[0], j, k));
+        to.insert(to.end(), row, row + part.box.count_x);
+      }
     }
-  }
+  };
+  const std::array<std::function<void()>, 3> copies{[&] { copy(depth, part.depth); },
+                                                    [&] { copy(nodes.surface_depth, part.surface_depth); },
+                                                    [&] { copy(nodes.facet, part.facet); }};
+  work.for_each(copies.size(), 1, [&](std::size_t i) { copies[i](); });
   return part;
 }
 

@@ -59,18 +59,21 @@ struct NodeExtent {
 
 // Of the nodes of a box for which is_in(node).
 template <typename IsIn>
-NodeExtent extent_of(const NodeBox& box, const IsIn& is_in) {
-  NodeExtent extent;
-  for (std::int32_t k = 0; k < box.count_z; ++k) {
+NodeExtent extent_of(const NodeBox& box, const IsIn& is_in, SharedWork& work) {
+  std::vector<NodeExtent> of_layer(static_cast<std::size_t>(box.count_z));
+  work.for_each(of_layer.size(), 1, [&](std::size_t layer) {
+    const auto k = static_cast<std::int32_t>(layer);
     for (std::int32_t j = 0; j < box.count_y; ++j) {
       const std::size_t row = box.index(0, j, k);
       std::int32_t first = 0, last = box.count_x - 1;
       while (first <= last && !is_in(row + static_cast<std::size_t>(first))) ++first;
       if (first > last) continue;
       while (!is_in(row + static_cast<std::size_t>(last))) --last;
-      extent.add({{first, j, k}, {last, j, k}});
+      of_layer[layer].add({{first, j, k}, {last, j, k}});
     }
-  }
+  });
+  NodeExtent extent;
+  for (const NodeExtent& own : of_layer) extent.add(own);
   return extent;
 }
 
@@ -114,7 +117,8 @@ CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ba
 // The same nodes but for `depth`, which is less at some of them, in no larger a box than the balls may need that are still
 // there: those of nodes, those in edges beside them (printing/cells/rolled_balls.h), and `own`, the cell's sphere. What is
 // found out about these nodes is the same as in the larger box, but for how they are numbered.
-CellNodes cut_to_balls(const CellNodes& nodes, const std::vector<float>& depth, const Sphere& own);
+CellNodes cut_to_balls(const CellNodes& nodes, const std::vector<float>& depth, const Sphere& own,
+                       SharedWork& work);
 
 // The square of the distance in spacings from each node to the nearest node of a set; kFarAway where the way is longer
 // than `most` along some axis. One axis after the other (P. Felzenszwalb and D. Huttenlocher, "Distance Transforms of

@@ -75,30 +75,14 @@ class Decimation {
   std::size_t pass(double most_squared, SharedWork& work) {
     work.check_interrupted();
     index();
-    candidates_.clear();
-    constexpr std::size_t kBetween = std::size_t{1} << 16;
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      if (i % kBetween == 0) work.check_interrupted();
-      const Triangle& t = triangles_[i];
-      for (std::size_t e = 0; e < 3; ++e) {
-        const std::uint32_t a = t[e], b = t[(e + 1) % 3];
-        if (a > b) continue;  // each edge once: the other triangle has it the other way round
-        Quadric both = quadrics_[a];
-        both.add(quadrics_[b]);
-        const double onto_a = std::max(0.0, both.at(points_[a])), onto_b = std::max(0.0, both.at(points_[b]));
-        const double most = most_squared * both.area;
-        // Of short edges first, where planes tell no difference.
-        const double bias = 1e-7 * length_squared(points_[a] - points_[b]) * both.area;
-        if (onto_a <= most) candidates_.push_back({static_cast<float>((onto_a + bias) / both.area), b, a});
-        if (onto_b <= most) candidates_.push_back({static_cast<float>((onto_b + bias) / both.area), a, b});
-      }
-    }
+    find_candidates(most_squared, work);
     work.check_interrupted();
     sort_by_cost();
     work.check_interrupted();
     busy_.assign(points_.size(), 0);
     renamed_.resize(points_.size());
     for (std::uint32_t v = 0; v < renamed_.size(); ++v) renamed_[v] = v;
+    constexpr std::size_t kBetween = std::size_t{1} << 16;
     std::size_t count = 0, looked_at = 0;
     for (const Collapse& c : candidates_) {
       if (++looked_at % kBetween == 0) work.check_interrupted();
@@ -139,6 +123,35 @@ class Decimation {
   }
 
  private:
+  // Of both ends of each edge, in any order.
+  void find_candidates(double most_squared, SharedWork& work) {
+    constexpr std::size_t kPart = std::size_t{1} << 14;
+    const std::size_t parts = (triangles_.size() + kPart - 1) / kPart;
+    std::vector<std::vector<Collapse>> found(parts);
+    work.for_each(parts, 1, [&](std::size_t part) {
+      found[part].reserve(3 * kPart);
+      for (std::size_t i = part * kPart; i < std::min(triangles_.size(), (part + 1) * kPart); ++i) {
+        const Triangle& t = triangles_[i];
+        for (std::size_t e = 0; e < 3; ++e) {
+          const std::uint32_t a = t[e], b = t[(e + 1) % 3];
+          if (a > b) continue;  // each edge once: the other triangle has it the other way round
+          Quadric both = quadrics_[a];
+          both.add(quadrics_[b]);
+          const double onto_a = std::max(0.0, both.at(points_[a])),
+                       onto_b = std::max(0.0, both.at(points_[b]));
+          const double most = most_squared * both.area;
+          // Of short edges first, where planes tell no difference.
+          const double bias = 1e-7 * length_squared(points_[a] - points_[b]) * both.area;
+          if (onto_a <= most) found[part].push_back({static_cast<float>((onto_a + bias) / both.area), b, a});
+          if (onto_b <= most) found[part].push_back({static_cast<float>((onto_b + bias) / both.area), a, b});
+        }
+      }
+    });
+    candidates_.clear();
+    for (const std::vector<Collapse>& some : found)
+      candidates_.insert(candidates_.end(), some.begin(), some.end());
+  }
+
   // By digits of the cost's bits, which of floats that are not negative ascend with these; then those of the same cost.
   void sort_by_cost() {
     constexpr unsigned kDigitBits = 11, kDigits = 3;

@@ -16,7 +16,9 @@ class Netter {
 
   PieceSurface make(SharedWork& work) {
     vertex_of_cube_.assign(box_.size(), kNone);
-    const NodeExtent piece = extent_of(box_, [&](std::size_t node) { return is_in(node); }).grown(1, box_);
+    const NodeExtent piece = extent_of(
+                                 box_, [&](std::size_t node) { return is_in(node); }, work)
+                                 .grown(1, box_);
     // Layer by layer, on all threads; what they find follows in the order of layers.
     std::vector<Layer> layers(static_cast<std::size_t>(box_.count_z));
     const auto for_each_layer = [&](const auto& f) {

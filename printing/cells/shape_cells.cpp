@@ -67,7 +67,7 @@ class CellShaper {
     std::vector<CellVoid> voids;
     constexpr int kMostPieces = 64;
     for (int rounds = 0; rounds < kMostPieces; ++rounds) {
-      if (rounds > 0) nodes = cut_to_balls(nodes, nodes.depth, packing_.spheres[cell]);
+      if (rounds > 0) nodes = cut_to_balls(nodes, nodes.depth, packing_.spheres[cell], work_);
       if (nodes.box.size() == 0) break;
       const Opened opened = open(region, nodes, cell);
       if (!opened.piece) break;
@@ -199,7 +199,7 @@ class CellShaper {
       const CellNodes& left = roofed.below ? roofed.below->nodes : nodes;
       const Opened& piece = roofed.below ? roofed.below->opened : opened;
       const std::vector<FlatCeiling> found =
-          flat_ceilings(region, left, piece.labels, *piece.piece, roof, share);
+          flat_ceilings(region, left, piece.labels, *piece.piece, roof, share, work_);
       if (found.empty()) return roofed;
       ceilings.insert(ceilings.end(), found.begin(), found.end());
       const std::vector<CellPlane> sides = roof_below(ceilings, nodes, opened.labels, *opened.piece, roof);
@@ -207,7 +207,7 @@ class CellShaper {
       roofed.planes.assign(planes.begin(), planes.end());
       roofed.planes.insert(roofed.planes.end(), sides.begin(), sides.end());
       roofed.below.emplace();
-      roofed.below->nodes = cut_to_balls(nodes, depth_behind(sides, nodes), packing_.spheres[cell]);
+      roofed.below->nodes = cut_to_balls(nodes, depth_behind(sides, nodes), packing_.spheres[cell], work_);
       if (roofed.below->nodes.box.size() == 0) return std::nullopt;
       roofed.below->opened =
           open(CellRegion(roofed.planes, surface_, near_, packing_.limits.wall), roofed.below->nodes, cell);
@@ -411,7 +411,8 @@ class CellShaper {
     const double kept = packing_.limits.gap + 3 * lattice_.spacing;
     const double reach = kept + nodes.deepest;
     const auto steps = static_cast<std::int32_t>(reach / lattice_.spacing);
-    NodeExtent extent = extent_of(of_labels, [&](std::size_t node) { return labels[node] == piece; });
+    NodeExtent extent = extent_of(
+        of_labels, [&](std::size_t node) { return labels[node] == piece; }, work_);
     const std::array<std::int32_t, 3> to_cell{of_labels.x - box.x, of_labels.y - box.y, of_labels.z - box.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       extent.first[axis] += to_cell[axis];
