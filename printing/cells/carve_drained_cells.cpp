@@ -212,6 +212,7 @@ class Carver {
   Carver(const Mesh& outer, const SurfaceIndex& surface, std::size_t void_count, const SurfaceOf& surface_of,
          const LastOf& last_of, const DrainagePlan& plan, double tolerance, const std::vector<double>& turns)
       : plan_(plan), outer_(outer) {
+    voids_.reserve(void_count);
     for (std::uint32_t v = 0; v < void_count; ++v) voids_.push_back({&surface_of(v), &last_of(v)});
     cuts_.resize(plan.channels.size() + plan.holes.size());
     tbb::parallel_for(std::size_t{0}, cuts_.size(), [&](std::size_t i) {
@@ -294,6 +295,7 @@ class Carver {
 
   void cut_void(const VoidOfPlan& own, const std::vector<VoidEnd>& ends) const {
     std::vector<CuttingPrism> prisms;
+    prisms.reserve(ends.size());
     for (const VoidEnd& end : ends)
       prisms.push_back(end.is_inward ? cuts_[end.cut].prisms.inward : cuts_[end.cut].prisms.onward);
     CutTubes& cut = *own.cut;

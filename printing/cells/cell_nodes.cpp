@@ -283,7 +283,7 @@ std::vector<std::int32_t> squared_distances(const NodeBox& box, const std::vecto
     const auto k = static_cast<std::int32_t>(layer);
     for (std::int32_t j = 0; j < rows; ++j)
       has_any[row_at(j, k)] =
-          measure_row(&is_in_set[box.index(0, j, k)], &squared[box.index(0, j, k)], length, most);
+          measure_row(&is_in_set[box.index(0, j, k)], &squared[box.index(0, j, k)], length, most) ? 1 : 0;
   });
   // In each line of rows: the least of what others in it have and their own distance.
   std::vector<char> has_more = has_any;

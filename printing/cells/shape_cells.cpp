@@ -46,6 +46,26 @@ double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Tr
   return std::abs(sum) / 6;
 }
 
+// A region opened by the ball, and what is made of it next: the largest piece that is worth it, if any.
+struct Opened {
+  OpenedCell cell;
+  std::vector<std::int32_t> labels;  // of nodes
+  std::optional<std::int32_t> piece;
+  bool has_others = false;  // that may be worth it
+};
+
+// What a roof leaves of a cell.
+struct BelowRoof {
+  CellNodes nodes;
+  Opened opened;
+};
+
+// A piece below its roof.
+struct Roofed {
+  std::vector<CellPlane> planes;   // of the cell and of the roof
+  std::optional<BelowRoof> below;  // absent: it needs no roof
+};
+
 class CellShaper {
  public:
   CellShaper(const SurfaceIndex& surface, const Packing& packing, const CellShape& shape,
@@ -88,26 +108,6 @@ class CellShaper {
   }
 
  private:
-  // A region opened by the ball, and what is made of it next: the largest piece that is worth it, if any.
-  struct Opened {
-    OpenedCell cell;
-    std::vector<std::int32_t> labels;  // of nodes
-    std::optional<std::int32_t> piece;
-    bool has_others = false;  // that may be worth it
-  };
-
-  // What a roof leaves of a cell.
-  struct BelowRoof {
-    CellNodes nodes;
-    Opened opened;
-  };
-
-  // A piece below its roof.
-  struct Roofed {
-    std::vector<CellPlane> planes;   // of the cell and of the roof
-    std::optional<BelowRoof> below;  // absent: it needs no roof
-  };
-
   Opened open(const CellRegion& region, const CellNodes& nodes, std::uint32_t cell) const {
     const Sphere& own = packing_.spheres[cell];
     Opened opened;

@@ -25,7 +25,9 @@ double along_ray(Vec3d start, Vec3d direction, const kernels::Facet& facet) {
   const Vec3d q = cross(from_a, ab);
   const double v = dot(direction, q) / determinant;
   const double t = dot(ac, q) / determinant;
-  return v >= 0 && u + v <= 1 && t > 0 ? t : kInfinity;
+  const bool is_met = v >= 0 && u + v <= 1 && t > 0;
+  if (!is_met) return kInfinity;
+  return t;
 }
 
 }  // namespace

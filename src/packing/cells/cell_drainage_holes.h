@@ -1,13 +1,13 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "packing/cells/cell_drainage_ways_out.h"
@@ -32,7 +32,9 @@ class CellHoleWays {
   struct Start {
     std::size_t orientation;
     std::uint32_t from, node;
-    friend auto operator<=>(const Start&, const Start&) = default;
+    friend bool operator<(const Start& a, const Start& b) {
+      return std::tie(a.orientation, a.from, a.node) < std::tie(b.orientation, b.from, b.node);
+    }
   };
   // The ways from there, which stay where they are; `is_new`: they are still to be looked for.
   struct Known {
