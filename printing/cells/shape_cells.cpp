@@ -248,18 +248,45 @@ class CellShaper {
                         const std::vector<std::int32_t>& labels, std::int32_t piece,
                         const Sphere& own) const {
     const NodeBox& box = nodes.box;
-    const double least = packing_.limits.min_radius;
+    if (is_about_centre(nodes, labels, piece, own)) return true;
+    const double least = packing_.limits.min_radius, needed = region.wall() + least;
     for (std::int32_t k = 0; k < box.count_z; ++k) {
       for (std::int32_t j = 0; j < box.count_y; ++j) {
         for (std::int32_t i = 0; i < box.count_x; ++i) {
           const std::size_t node = box.index(i, j, k);
           if (labels[node] != piece || !nodes.has_ball(node)) continue;
           const Vec3d at = box.at(i, j, k);
-          // About its own sphere's centre a ball fits that is at least as large as the least.
-          if (length(at - own.centre) < lattice_.spacing) return true;
-          if (region.behind_planes(at) < least) continue;
-          const double needed = region.wall() + least;
-          if (region.surface_near(at, needed, nodes.facet[node]).distance >= needed) return true;
+          double missing = least - region.behind_planes(at);
+          if (missing <= 0) missing = needed - region.surface_near(at, needed, nodes.facet[node]).distance;
+          if (missing <= 0) return true;
+          // Depths change by no more than the way between two points, so those that follow do not do either.
+          constexpr double kSurely = 1 - 1e-9;
+          i += static_cast<std::int32_t>(missing * kSurely / lattice_.spacing);
+        }
+      }
+    }
+    return false;
+  }
+
+  // About its own sphere's centre a ball fits that is at least as large as the least.
+  bool is_about_centre(const CellNodes& nodes, const std::vector<std::int32_t>& labels, std::int32_t piece,
+                       const Sphere& own) const {
+    const NodeBox& box = nodes.box;
+    const Vec3d place = (own.centre - box.at(0, 0, 0)) * (1 / lattice_.spacing);
+    const auto range = [](double middle, std::int32_t count) {
+      return std::pair{std::max(0, static_cast<std::int32_t>(std::floor(middle)) - 1),
+                       std::min(count - 1, static_cast<std::int32_t>(std::ceil(middle)) + 1)};
+    };
+    const auto [first_x, last_x] = range(place.x, box.count_x);
+    const auto [first_y, last_y] = range(place.y, box.count_y);
+    const auto [first_z, last_z] = range(place.z, box.count_z);
+    for (std::int32_t k = first_z; k <= last_z; ++k) {
+      for (std::int32_t j = first_y; j <= last_y; ++j) {
+        for (std::int32_t i = first_x; i <= last_x; ++i) {
+          const std::size_t node = box.index(i, j, k);
+          if (labels[node] == piece && nodes.has_ball(node) &&
+              length(box.at(i, j, k) - own.centre) < lattice_.spacing)
+            return true;
         }
       }
     }
