@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <tbb/parallel_for.h>
@@ -85,6 +86,31 @@ PrismPair prisms_of_window(const Tube& tube, const TubeShape& shape) {
   return prisms_of(tube, half, half, half, shape);
 }
 
+// How far starts of lines along a tube are from its axis at most.
+double reach_across(const std::vector<Vec3d>& starts, const Tube& tube) {
+  double reach = 0;
+  for (const Vec3d start : starts) reach = std::max(reach, length(start - tube.start));
+  return reach;
+}
+
+// Facets that may come as near to a segment, by their boxes.
+std::vector<kernels::Facet> facets_about(const Mesh& mesh, const Segment& segment, double reach) {
+  constexpr double kSlack = 1e-3;  // mm
+  const Vec3d around{reach + kSlack, reach + kSlack, reach + kSlack};
+  const Vec3d lower = min_of(segment.start, segment.end) - around;
+  const Vec3d upper = max_of(segment.start, segment.end) + around;
+  std::vector<kernels::Facet> facets;
+  for (const Triangle& t : mesh.triangles) {
+    const kernels::Facet facet = facet_of(mesh, t);
+    const Box3f box = kernels::box_of(facet);
+    const Vec3d least = to_double(box.lower), most = to_double(box.upper);
+    if (least.x <= upper.x && least.y <= upper.y && least.z <= upper.z && most.x >= lower.x &&
+        most.y >= lower.y && most.z >= lower.z)
+      facets.push_back(facet);
+  }
+  return facets;
+}
+
 // nullopt if no plane across the hole lies between the void's surface and the model's.
 std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::uint32_t> near_outside,
                                         const Mesh& from, const Tube& tube, const TubeShape& shape) {
@@ -92,11 +118,13 @@ std::optional<PrismPair> prisms_of_hole(const Mesh& outer, std::span<const std::
   const double farthest = length(tube.end - tube.start) + kCutBeyond * tube.radius;
   std::vector<Vec3d> starts = section_of(tube, shape);
   starts.push_back(tube.start);
+  const std::vector<kernels::Facet> near = facets_about(
+      from, {tube.start - axis * tube.radius, tube.start + axis * farthest}, reach_across(starts, tube));
   Passage out_of_void, outside;
   for (const Vec3d start : starts) {
     Passage line;
-    for (const Triangle& t : from.triangles) {
-      const auto along = passes(start, axis, facet_of(from, t));
+    for (const kernels::Facet& facet : near) {
+      const auto along = passes(start, axis, facet);
       if (along && *along > -tube.radius && *along < farthest) line.add(*along);
     }
     if (line.last < line.first) return std::nullopt;
@@ -140,6 +168,19 @@ struct CutEnd {
   std::uint32_t ring_base = 0;
 };
 
+// A void, and the tubes that it was cut by.
+struct CutTubes {
+  std::vector<CuttingPrism> prisms;
+  std::vector<CutEnd> ends;  // and whether it could be
+  std::vector<char> is_cut;
+  CutMesh mesh{Mesh{}};
+};
+
+bool are_same(const CuttingPrism& a, const CuttingPrism& b) {
+  return a.ring == b.ring && a.axis == b.axis && a.start == b.start && a.length == b.length &&
+         a.radius == b.radius;
+}
+
 bool cut(CutMesh& target, std::span<const std::uint32_t> own_near, const CuttingPrism& prism, CutEnd& end) {
   const std::vector<std::uint32_t> near = target.near(prism, own_near);
   auto made = cut_surface(target.mesh, near, prism);
@@ -166,11 +207,13 @@ struct PlannedCut {
 
 class Carver {
  public:
-  Carver(const Mesh& outer, const SurfaceIndex& surface, const CellVoids& cells, const DrainagePlan& plan,
-         double tolerance, const std::vector<double>& turns)
+  // `surface_of` gives that of a void of the plan, `last_of` what it was cut by last.
+  template <typename SurfaceOf, typename LastOf>
+  Carver(const Mesh& outer, const SurfaceIndex& surface, std::size_t void_count, const SurfaceOf& surface_of,
+         const LastOf& last_of, const DrainagePlan& plan, double tolerance, const std::vector<double>& turns)
       : plan_(plan), outer_(outer) {
-    voids_.reserve(cells.voids.size());
-    for (const CellVoid& piece : cells.voids) voids_.emplace_back(piece.surface);
+    voids_.reserve(void_count);
+    for (std::uint32_t v = 0; v < void_count; ++v) voids_.push_back({&surface_of(v), &last_of(v)});
     cuts_.resize(plan.channels.size() + plan.holes.size());
     tbb::parallel_for(std::size_t{0}, cuts_.size(), [&](std::size_t i) {
       PlannedCut& cut = cuts_[i];
@@ -188,8 +231,7 @@ class Carver {
       const Vec3d beyond = direction_of(hole.tube) * (kCutBeyond * hole.tube.radius);
       cut.near_outside =
           surface.triangles_near({hole.tube.start, hole.tube.end + beyond}, hole.tube.radius + kBeyond);
-      const auto prisms =
-          prisms_of_hole(outer, cut.near_outside, cells.voids[hole.from].surface, hole.tube, shape);
+      const auto prisms = prisms_of_hole(outer, cut.near_outside, surface_of(hole.from), hole.tube, shape);
       if (!prisms) return;
       cut.prisms = *prisms;
       cut.near_outside = surface.triangles_near(axis_of(cut.prisms.onward), reach_of(cut.prisms.onward));
@@ -219,23 +261,52 @@ class Carver {
   }
 
  private:
+  // One end of a planned cut.
+  struct VoidEnd {
+    std::size_t cut;
+    bool is_inward;
+  };
+
+  struct VoidOfPlan {
+    const Mesh* surface;
+    CutTubes* cut;
+  };
+
   // Each void's surface is cut by one tube after the other, different ones at the same time.
   void cut_voids() {
     std::vector<char> is_cut(2 * cuts_.size(), 1);
     tbb::parallel_for(std::size_t{0}, voids_.size(), [&](std::size_t v) {
+      std::vector<VoidEnd> ends;
       for (std::size_t i = 0; i < cuts_.size(); ++i) {
-        PlannedCut& planned = cuts_[i];
-        if (!planned.is_made) continue;
-        if (planned.from == v) is_cut[2 * i] = cut_void(v, planned.prisms.inward, planned.inward) ? 1 : 0;
-        if (planned.to == v) is_cut[2 * i + 1] = cut_void(v, planned.prisms.onward, planned.onward) ? 1 : 0;
+        if (!cuts_[i].is_made) continue;
+        if (cuts_[i].from == v) ends.push_back({i, true});
+        if (cuts_[i].to == v) ends.push_back({i, false});
+      }
+      cut_void(voids_[v], ends);
+      for (std::size_t n = 0; n < ends.size(); ++n) {
+        const auto [i, is_inward] = ends[n];
+        (is_inward ? cuts_[i].inward : cuts_[i].onward) = voids_[v].cut->ends[n];
+        is_cut[2 * i + (is_inward ? 0 : 1)] = voids_[v].cut->is_cut[n];
       }
     });
     for (std::size_t i = 0; i < cuts_.size(); ++i)
       cuts_[i].is_made = cuts_[i].is_made && is_cut[2 * i] != 0 && is_cut[2 * i + 1] != 0;
   }
 
-  bool cut_void(std::size_t v, const CuttingPrism& prism, CutEnd& end) {
-    CutMesh& target = voids_[v];
+  void cut_void(const VoidOfPlan& own, const std::vector<VoidEnd>& ends) const {
+    std::vector<CuttingPrism> prisms;
+    prisms.reserve(ends.size());
+    for (const VoidEnd& end : ends)
+      prisms.push_back(end.is_inward ? cuts_[end.cut].prisms.inward : cuts_[end.cut].prisms.onward);
+    CutTubes& cut = *own.cut;
+    if (!cut.mesh.mesh.triangles.empty() && std::ranges::equal(cut.prisms, prisms, are_same)) return;
+    cut = {std::move(prisms), std::vector<CutEnd>(ends.size()), std::vector<char>(ends.size(), 0),
+           CutMesh(*own.surface)};
+    for (std::size_t n = 0; n < ends.size(); ++n)
+      cut.is_cut[n] = cut_once(cut.mesh, cut.prisms[n], cut.ends[n]) ? 1 : 0;
+  }
+
+  static bool cut_once(CutMesh& target, const CuttingPrism& prism, CutEnd& end) {
     std::vector<std::uint32_t> near = triangles_near(target.mesh, axis_of(prism), reach_of(prism));
     std::erase_if(near, [&](std::uint32_t i) { return i >= target.own_triangle_count; });
     return cut(target, near, prism, end);
@@ -256,7 +327,8 @@ class Carver {
     add_part(outer_, 0, outer_.own_triangle_count, 0, PartKind::outer);
     add_part(outer_, outer_.own_triangle_count, outer_.mesh.triangles.size(), 0, PartKind::remnant);
     std::vector<std::uint32_t> bases;
-    for (const CutMesh& piece : voids_) {
+    for (const VoidOfPlan& own : voids_) {
+      const CutMesh& piece = own.cut->mesh;
       bases.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
       mesh.positions.insert(mesh.positions.end(), piece.mesh.positions.begin(), piece.mesh.positions.end());
       // Both kinds of triangles are one part.
@@ -293,7 +365,7 @@ class Carver {
 
   const DrainagePlan& plan_;
   CutMesh outer_;
-  std::vector<CutMesh> voids_;
+  std::vector<VoidOfPlan> voids_;
   std::vector<PlannedCut> cuts_;
 };
 
@@ -311,20 +383,40 @@ bool may_be_cut(const Mesh& outer, const SurfaceIndex& surface, const CellVoid& 
          may_be_cut(from.surface, triangles_near(from.surface, axis_of(inward), reach_of(inward)), inward);
 }
 
-std::variant<Solid, UncutTubes> carve_drained_cells(const Mesh& outer, const SurfaceIndex& surface,
-                                                    const CellVoids& cells, const DrainagePlan& plan,
-                                                    double tolerance, Monitor& monitor) {
+struct CellCarver::CutVoid {
+  CutTubes tubes;
+};
+
+CellCarver::CellCarver(const Mesh& outer, const SurfaceIndex& surface, const CellVoids& cells,
+                       double tolerance)
+    : outer_(outer), surface_(surface), cells_(cells), tolerance_(tolerance), last_(cells.voids.size()) {}
+
+CellCarver::~CellCarver() = default;
+
+std::variant<Solid, UncutTubes> CellCarver::carve(std::span<const std::uint32_t> kept,
+                                                  const DrainagePlan& plan, Monitor& monitor) {
   // Small triangles beside a rim may be turned over by rounding to fp32: a turned ring makes others.
   constexpr double kTurn = 0.382;
   constexpr int kMostTurns = 6;
+  const auto surface_of = [&](std::uint32_t v) -> const Mesh& { return cells_.voids[kept[v]].surface; };
+  const auto last_of = [&](std::uint32_t v) -> CutTubes& { return last_[kept[v]].tubes; };
   std::vector<double> turns(plan.channels.size() + plan.holes.size(), 0);
   for (int i = 1;; ++i) {
-    auto carved = Carver(outer, surface, cells, plan, tolerance, turns).carve(monitor);
+    auto carved =
+        Carver(outer_, surface_, kept.size(), surface_of, last_of, plan, tolerance_, turns).carve(monitor);
     const auto* uncut = std::get_if<UncutTubes>(&carved);
     if (uncut == nullptr || i == kMostTurns) return carved;
     for (const std::size_t window : uncut->windows) turns[window] += kTurn;
     for (const std::size_t hole : uncut->holes) turns[plan.channels.size() + hole] += kTurn;
   }
+}
+
+std::variant<Solid, UncutTubes> carve_drained_cells(const Mesh& outer, const SurfaceIndex& surface,
+                                                    const CellVoids& cells, const DrainagePlan& plan,
+                                                    double tolerance, Monitor& monitor) {
+  std::vector<std::uint32_t> all(cells.voids.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return CellCarver(outer, surface, cells, tolerance).carve(all, plan, monitor);
 }
 
 }  // namespace aerate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 
@@ -138,7 +139,64 @@ std::optional<Box3d> box_of_balls(const CellRegion& region, const Box3d& within,
   return box;
 }
 
+// The square of the way from each node of a row to the nearest one of the set; are there any?
+bool measure_row(const std::uint8_t* is_in_set, std::int32_t* squared, std::size_t length,
+                 std::int32_t most) {
+  bool has_any = false;
+  const auto sweep = [&](std::size_t i, std::int32_t& away) {
+    away = is_in_set[i] != 0 ? 0 : away + 1;
+    if (away > most) return;
+    has_any = true;
+    squared[i] = std::min(squared[i], away * away);
+  };
+  std::int32_t away = most;
+  for (std::size_t i = 0; i < length; ++i) sweep(i, away);
+  away = most;
+  for (std::size_t i = length; i-- > 0;) sweep(i, away);
+  return has_any;
+}
+
 }  // namespace
+
+void NodeExtent::add(const NodeExtent& other) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first[axis] = std::min(first[axis], other.first[axis]);
+    last[axis] = std::max(last[axis], other.last[axis]);
+  }
+}
+
+NodeExtent NodeExtent::grown(std::int32_t by, const NodeBox& box) const {
+  const std::array<std::int32_t, 3> counts{box.count_x, box.count_y, box.count_z};
+  NodeExtent result;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    result.first[axis] = std::max(0, first[axis] - by);
+    result.last[axis] = std::min(counts[axis] - 1, last[axis] + by);
+  }
+  return result;
+}
+
+std::optional<std::array<std::int32_t, 3>> NodeBox::nearest(Vec3d p) const {
+  const Vec3d place = (p - origin()) * (1 / lattice.spacing);
+  const auto i = static_cast<std::int32_t>(std::lround(place.x)) - cut_x;
+  const auto j = static_cast<std::int32_t>(std::lround(place.y)) - cut_y;
+  const auto k = static_cast<std::int32_t>(std::lround(place.z)) - cut_z;
+  if (i < 0 || j < 0 || k < 0 || i >= count_x || j >= count_y || k >= count_z) return std::nullopt;
+  return std::array{i, j, k};
+}
+
+NodeBox part_of(const NodeBox& box, const NodeExtent& extent) {
+  const auto& [x, y, z] = extent.first;
+  return {.lattice = box.lattice,
+          .x = box.x + x,
+          .y = box.y + y,
+          .z = box.z + z,
+          .count_x = extent.last[0] - x + 1,
+          .count_y = extent.last[1] - y + 1,
+          .count_z = extent.last[2] - z + 1,
+          .cut_x = box.cut_x + x,
+          .cut_y = box.cut_y + y,
+          .cut_z = box.cut_z + z};
+}
 
 CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ball_radius,
                         const NodeLattice& lattice, SharedWork& work) {
@@ -172,31 +230,92 @@ CellNodes look_at_nodes(const CellRegion& region, const Box3d& within, double ba
   return nodes;
 }
 
-std::vector<std::int32_t> squared_distances(const NodeBox& box,
-                                            const std::function<bool(std::size_t node)>& is_in_set,
-                                            std::int32_t most) {
-  std::vector<std::int32_t> squared(box.size());
-  for (std::size_t node = 0; node < box.size(); ++node) squared[node] = is_in_set(node) ? 0 : kFarAway;
-  // In rows of `count` nodes that are `step` apart: the least of what others in it have and their own distance.
-  std::vector<std::int32_t> row;
-  const auto along = [&](std::size_t begin, std::size_t step, std::int32_t count) {
-    row.clear();
-    for (std::int32_t i = 0; i < count; ++i)
-      row.push_back(squared[begin + static_cast<std::size_t>(i) * step]);
-    if (std::ranges::min(row) == kFarAway) return;
-    for (std::int32_t i = 0; i < count; ++i) {
-      std::int32_t least = kFarAway;
-      for (std::int32_t j = std::max(0, i - most); j <= std::min(count - 1, i + most); ++j)
-        least = std::min(least, row[static_cast<std::size_t>(j)] + (i - j) * (i - j));
-      squared[begin + static_cast<std::size_t>(i) * step] = least;
+CellNodes cut_to_balls(const CellNodes& nodes, const std::vector<float>& depth, const Sphere& own,
+                       SharedWork& work) {
+  const NodeBox& box = nodes.box;
+  CellNodes part;
+  part.box.lattice = box.lattice;
+  part.ball_radius = nodes.ball_radius;
+  part.deepest = nodes.deepest;
+  NodeExtent balls = extent_of(
+      box, [&](std::size_t node) { return depth[node] >= 0; }, work);
+  if (balls.is_empty()) return part;
+  // How far a ball in an edge is from its node at most, and reaches, in spacings.
+  constexpr double kBeyond = 8;
+  const auto in_spacings = [&](double length) {
+    return static_cast<std::int32_t>(std::ceil(length / box.lattice.spacing));
+  };
+  balls = balls.grown(in_spacings(nodes.deepest + kBeyond * box.lattice.spacing), box);
+  if (const auto middle = box.nearest(own.centre)) {
+    const auto [i, j, k] = *middle;
+    const NodeExtent about{*middle, *middle};
+    if (depth[box.index(i, j, k)] >= 0)
+      balls.add(about.grown(in_spacings(own.radius + kBeyond * box.lattice.spacing), box));
+  }
+  part.box = part_of(box, balls);
+  const auto copy = [&](const auto& from, auto& to) {
+    to.reserve(part.box.size());
+    for (std::int32_t k = balls.first[2]; k <= balls.last[2]; ++k) {
+      for (std::int32_t j = balls.first[1]; j <= balls.last[1]; ++j) {
+        const auto row = from.begin() + static_cast<std::ptrdiff_t>(box.index(balls.first[0], j, k));
+        to.insert(to.end(), row, row + part.box.count_x);
+      }
     }
   };
-  for (std::int32_t k = 0; k < box.count_z; ++k)
-    for (std::int32_t j = 0; j < box.count_y; ++j) along(box.index(0, j, k), 1, box.count_x);
-  for (std::int32_t k = 0; k < box.count_z; ++k)
-    for (std::int32_t i = 0; i < box.count_x; ++i) along(box.index(i, 0, k), box.step_y(), box.count_y);
-  for (std::int32_t j = 0; j < box.count_y; ++j)
-    for (std::int32_t i = 0; i < box.count_x; ++i) along(box.index(i, j, 0), box.step_z(), box.count_z);
+  const std::array<std::function<void()>, 3> copies{[&] { copy(depth, part.depth); },
+                                                    [&] { copy(nodes.surface_depth, part.surface_depth); },
+                                                    [&] { copy(nodes.facet, part.facet); }};
+  work.for_each(copies.size(), 1, [&](std::size_t i) { copies[i](); });
+  return part;
+}
+
+std::vector<std::int32_t> squared_distances(const NodeBox& box, const std::vector<std::uint8_t>& is_in_set,
+                                            std::int32_t most, SharedWork& work) {
+  std::vector<std::int32_t> squared(box.size(), kFarAway);
+  const auto length = static_cast<std::size_t>(box.count_x);
+  const std::int32_t rows = box.count_y, layers = box.count_z;
+  std::vector<char> has_any(static_cast<std::size_t>(rows) * static_cast<std::size_t>(layers), 0);
+  const auto row_at = [&](std::int32_t j, std::int32_t k) {
+    return static_cast<std::size_t>(k) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(j);
+  };
+  constexpr std::size_t kGrain = 4;
+  work.for_each(static_cast<std::size_t>(layers), kGrain, [&](std::size_t layer) {
+    const auto k = static_cast<std::int32_t>(layer);
+    for (std::int32_t j = 0; j < rows; ++j)
+      has_any[row_at(j, k)] =
+          measure_row(&is_in_set[box.index(0, j, k)], &squared[box.index(0, j, k)], length, most) ? 1 : 0;
+  });
+  // In each line of rows: the least of what others in it have and their own distance.
+  std::vector<char> has_more = has_any;
+  const auto along = [&](std::int32_t count, const auto& row_of, const auto& node_of) {
+    std::vector<std::int32_t> before(static_cast<std::size_t>(count) * length);
+    for (std::int32_t i = 0; i < count; ++i)
+      if (has_any[row_of(i)] != 0)
+        std::copy_n(&squared[node_of(i)], length, &before[static_cast<std::size_t>(i) * length]);
+    for (std::int32_t i = 0; i < count; ++i) {
+      std::int32_t* const row = &squared[node_of(i)];
+      for (std::int32_t j = std::max(0, i - most); j <= std::min(count - 1, i + most); ++j) {
+        if (j == i || has_any[row_of(j)] == 0) continue;
+        const std::int32_t* const other = &before[static_cast<std::size_t>(j) * length];
+        const std::int32_t apart = (i - j) * (i - j);
+        for (std::size_t x = 0; x < length; ++x) row[x] = std::min(row[x], other[x] + apart);
+        has_more[row_of(i)] = 1;
+      }
+    }
+  };
+  work.for_each(static_cast<std::size_t>(layers), kGrain, [&](std::size_t layer) {
+    const auto k = static_cast<std::int32_t>(layer);
+    along(
+        rows, [&](std::int32_t j) { return row_at(j, k); },
+        [&](std::int32_t j) { return box.index(0, j, k); });
+  });
+  has_any = has_more;
+  work.for_each(static_cast<std::size_t>(rows), kGrain, [&](std::size_t row) {
+    const auto j = static_cast<std::int32_t>(row);
+    along(
+        layers, [&](std::int32_t k) { return row_at(j, k); },
+        [&](std::int32_t k) { return box.index(0, j, k); });
+  });
   return squared;
 }
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -72,30 +75,14 @@ class Decimation {
   std::size_t pass(double most_squared, SharedWork& work) {
     work.check_interrupted();
     index();
-    candidates_.clear();
-    constexpr std::size_t kBetween = std::size_t{1} << 16;
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      if (i % kBetween == 0) work.check_interrupted();
-      const Triangle& t = triangles_[i];
-      for (std::size_t e = 0; e < 3; ++e) {
-        const std::uint32_t a = t[e], b = t[(e + 1) % 3];
-        if (a > b) continue;  // each edge once: the other triangle has it the other way round
-        Quadric both = quadrics_[a];
-        both.add(quadrics_[b]);
-        const double onto_a = std::max(0.0, both.at(points_[a])), onto_b = std::max(0.0, both.at(points_[b]));
-        const double most = most_squared * both.area;
-        // Of short edges first, where planes tell no difference.
-        const double bias = 1e-7 * length_squared(points_[a] - points_[b]) * both.area;
-        if (onto_a <= most) candidates_.push_back({static_cast<float>((onto_a + bias) / both.area), b, a});
-        if (onto_b <= most) candidates_.push_back({static_cast<float>((onto_b + bias) / both.area), a, b});
-      }
-    }
+    find_candidates(most_squared, work);
     work.check_interrupted();
-    std::sort(candidates_.begin(), candidates_.end());
+    sort_by_cost();
     work.check_interrupted();
     busy_.assign(points_.size(), 0);
     renamed_.resize(points_.size());
     for (std::uint32_t v = 0; v < renamed_.size(); ++v) renamed_[v] = v;
+    constexpr std::size_t kBetween = std::size_t{1} << 16;
     std::size_t count = 0, looked_at = 0;
     for (const Collapse& c : candidates_) {
       if (++looked_at % kBetween == 0) work.check_interrupted();
@@ -136,6 +123,62 @@ class Decimation {
   }
 
  private:
+  // Of both ends of each edge, in any order.
+  void find_candidates(double most_squared, SharedWork& work) {
+    constexpr std::size_t kPart = std::size_t{1} << 14;
+    const std::size_t parts = (triangles_.size() + kPart - 1) / kPart;
+    std::vector<std::vector<Collapse>> found(parts);
+    work.for_each(parts, 1, [&](std::size_t part) {
+      found[part].reserve(3 * kPart);
+      for (std::size_t i = part * kPart; i < std::min(triangles_.size(), (part + 1) * kPart); ++i) {
+        const Triangle& t = triangles_[i];
+        for (std::size_t e = 0; e < 3; ++e) {
+          const std::uint32_t a = t[e], b = t[(e + 1) % 3];
+          if (a > b) continue;  // each edge once: the other triangle has it the other way round
+          Quadric both = quadrics_[a];
+          both.add(quadrics_[b]);
+          const double onto_a = std::max(0.0, both.at(points_[a])),
+                       onto_b = std::max(0.0, both.at(points_[b]));
+          const double most = most_squared * both.area;
+          // Of short edges first, where planes tell no difference.
+          const double bias = 1e-7 * length_squared(points_[a] - points_[b]) * both.area;
+          if (onto_a <= most) found[part].push_back({static_cast<float>((onto_a + bias) / both.area), b, a});
+          if (onto_b <= most) found[part].push_back({static_cast<float>((onto_b + bias) / both.area), a, b});
+        }
+      }
+    });
+    candidates_.clear();
+    for (const std::vector<Collapse>& some : found)
+      candidates_.insert(candidates_.end(), some.begin(), some.end());
+  }
+
+  // By digits of the cost's bits, which of floats that are not negative ascend with these; then those of the same cost.
+  void sort_by_cost() {
+    constexpr unsigned kDigitBits = 11, kDigits = 3;
+    constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
+    const auto digit = [](const Collapse& c, unsigned n) {
+      return std::bit_cast<std::uint32_t>(c.cost) >> (n * kDigitBits) & (kValues - 1);
+    };
+    std::array<std::array<std::size_t, kValues>, kDigits> next{};
+    for (const Collapse& c : candidates_)
+      for (unsigned n = 0; n < kDigits; ++n) ++next[n][digit(c, n)];
+    sorted_.resize(candidates_.size());
+    for (unsigned n = 0; n < kDigits; ++n) {
+      std::size_t before = 0;
+      for (std::size_t& count : next[n]) before += std::exchange(count, before);
+      for (const Collapse& c : candidates_) sorted_[next[n][digit(c, n)]++] = c;
+      std::swap(candidates_, sorted_);
+    }
+    for (std::size_t first = 0; first < candidates_.size();) {
+      std::size_t last = first + 1;
+      while (last < candidates_.size() && candidates_[last].cost == candidates_[first].cost) ++last;
+      if (last > first + 1)
+        std::sort(candidates_.begin() + static_cast<std::ptrdiff_t>(first),
+                  candidates_.begin() + static_cast<std::ptrdiff_t>(last));
+      first = last;
+    }
+  }
+
   Vec3d doubled_area(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     return cross(points_[b] - points_[a], points_[c] - points_[a]);
   }
@@ -233,7 +276,7 @@ class Decimation {
   std::vector<Vec3d> points_;
   std::vector<Quadric> quadrics_;
   std::vector<std::uint32_t> first_, around_, renamed_;
-  std::vector<Collapse> candidates_;
+  std::vector<Collapse> candidates_, sorted_;
   std::vector<char> busy_;
   std::vector<double> deviation_;  // by vertex: of what went into it
   double most_ = 0;

@@ -43,13 +43,16 @@ class CeilingFinder {
         frame_(roof.up),
         widest_(2 * share * half_top(roof, nodes.ball_radius)) {}
 
-  std::vector<FlatCeiling> find() {
+  std::vector<FlatCeiling> find(SharedWork& work) {
     const NodeBox& box = nodes_.box;
-    for (std::int32_t k = 0; k < box.count_z; ++k) {
+    std::vector<std::vector<Found>> of_layer(static_cast<std::size_t>(box.count_z));
+    work.for_each(of_layer.size(), 1, [&](std::size_t layer) {
       for (std::int32_t j = 0; j < box.count_y; ++j) {
-        for (std::int32_t i = 0; i < box.count_x; ++i) look_at(i, j, k);
+        for (std::int32_t i = 0; i < box.count_x; ++i)
+          look_at(i, j, static_cast<std::int32_t>(layer), of_layer[layer]);
       }
-    }
+    });
+    for (const std::vector<Found>& found : of_layer) found_.insert(found_.end(), found.begin(), found.end());
     return those_too_wide();
   }
 
@@ -60,7 +63,7 @@ class CeilingFinder {
     Vec3d centre;  // of the ball that touches the ceiling
   };
 
-  void look_at(std::int32_t i, std::int32_t j, std::int32_t k) {
+  void look_at(std::int32_t i, std::int32_t j, std::int32_t k, std::vector<Found>& found) const {
     const std::size_t node = nodes_.box.index(i, j, k);
     if (labels_[node] != piece_ || !nodes_.is_outermost(node)) return;
     const Vec3d at = nodes_.box.at(i, j, k);
@@ -68,12 +71,12 @@ class CeilingFinder {
     const auto depth = static_cast<double>(nodes_.depth[node]);
     // Where something else than the region ends the piece, only nodes tell.
     if (bound.depth > depth + 0.01 * nodes_.box.lattice.spacing) {
-      if (is_below_solid(at)) found_.push_back({node, at, at});
+      if (is_below_solid(at)) found.push_back({node, at, at});
       return;
     }
     const double least = std::sin(std::asin(roof_.sine) + kMarginDegrees * std::numbers::pi / 180);
     if (dot(bound.outward, roof_.up) > least)
-      found_.push_back({node, at, at + bound.outward * (bound.depth - nodes_.ball_radius)});
+      found.push_back({node, at, at + bound.outward * (bound.depth - nodes_.ball_radius)});
   }
 
   Bound bound_at(std::size_t node, Vec3d at) const {
@@ -104,13 +107,10 @@ class CeilingFinder {
   }
 
   bool has_ball_at(Vec3d p) const {
-    const NodeBox& box = nodes_.box;
-    const Vec3d place = (p - box.at(0, 0, 0)) * (1 / box.lattice.spacing);
-    const auto i = static_cast<std::int32_t>(std::lround(place.x));
-    const auto j = static_cast<std::int32_t>(std::lround(place.y));
-    const auto k = static_cast<std::int32_t>(std::lround(place.z));
-    if (i < 0 || j < 0 || k < 0 || i >= box.count_x || j >= box.count_y || k >= box.count_z) return false;
-    const std::size_t node = box.index(i, j, k);
+    const auto nearest = nodes_.box.nearest(p);
+    if (!nearest) return false;
+    const auto [i, j, k] = *nearest;
+    const std::size_t node = nodes_.box.index(i, j, k);
     return labels_[node] == piece_ && nodes_.has_ball(node);
   }
 
@@ -254,9 +254,11 @@ class TentFinder {
     for (std::size_t node = 0; node < box.size(); ++node) count += is_in(node) ? 1U : 0U;
     std::int32_t step = 1;
     while (count / static_cast<std::size_t>(step * step * step) > kMost) ++step;
-    for (std::int32_t k = 0; k < box.count_z; k += step) {
-      for (std::int32_t j = 0; j < box.count_y; j += step) {
-        for (std::int32_t i = 0; i < box.count_x; i += step)
+    // The same ones in whatever part of the box.
+    const auto first = [step](std::int32_t cut) { return (step - cut % step) % step; };
+    for (std::int32_t k = first(box.cut_z); k < box.count_z; k += step) {
+      for (std::int32_t j = first(box.cut_y); j < box.count_y; j += step) {
+        for (std::int32_t i = first(box.cut_x); i < box.count_x; i += step)
           if (is_in(box.index(i, j, k))) samples_.push_back(frame_.to_frame(box.at(i, j, k)));
       }
     }
@@ -363,8 +365,8 @@ class TentFinder {
 
 std::vector<FlatCeiling> flat_ceilings(const CellRegion& region, const CellNodes& nodes,
                                        const std::vector<std::int32_t>& labels, std::int32_t piece,
-                                       const Roof& roof, double share) {
-  return CeilingFinder(region, nodes, labels, piece, roof, share).find();
+                                       const Roof& roof, double share, SharedWork& work) {
+  return CeilingFinder(region, nodes, labels, piece, roof, share).find(work);
 }
 
 std::vector<CellPlane> roof_below(std::span<const FlatCeiling> ceilings, const CellNodes& nodes,

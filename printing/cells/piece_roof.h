@@ -28,7 +28,7 @@ struct FlatCeiling {
 // that, are left out. In the order of nodes.
 std::vector<FlatCeiling> flat_ceilings(const CellRegion& region, const CellNodes& nodes,
                                        const std::vector<std::int32_t>& labels, std::int32_t piece,
-                                       const Roof& roof, double share);
+                                       const Roof& roof, double share, SharedWork& work);
 
 // Planes that keep a piece below all of `ceilings` and leave as much of it as was found: of roofs with eight
 // sides, under many places, each with its sides moved out as far as the ceilings allow. Their neighbour is kNone.

@@ -16,24 +16,46 @@ class Netter {
 
   PieceSurface make(SharedWork& work) {
     vertex_of_cube_.assign(box_.size(), kNone);
+    const NodeExtent piece = extent_of(
+                                 box_, [&](std::size_t node) { return is_in(node); }, work)
+                                 .grown(1, box_);
+    // Layer by layer, on all threads; what they find follows in the order of layers.
+    std::vector<Layer> layers(static_cast<std::size_t>(box_.count_z));
+    const auto for_each_layer = [&](const auto& f) {
+      work.for_each(layers.size(), 1, [&](std::size_t k) {
+        if (static_cast<std::int32_t>(k) >= piece.first[2] && static_cast<std::int32_t>(k) <= piece.last[2])
+          f(static_cast<std::int32_t>(k), layers[k]);
+      });
+    };
+    for_each_layer([&](std::int32_t k, Layer& layer) {
+      for (std::int32_t j = piece.first[1]; j < piece.last[1]; ++j)
+        look_at_row(piece.first[0], piece.last[0], j, k, layer);
+    });
     std::int64_t cells = 0;
-    for (std::int32_t k = 0; k + 1 < box_.count_z; ++k) {
-      work.check_interrupted();
-      for (std::int32_t j = 0; j + 1 < box_.count_y; ++j) {
-        for (std::int32_t i = 0; i + 1 < box_.count_x; ++i) cells += look_at(i, j, k);
-      }
+    std::uint32_t vertices = 0;
+    for (Layer& layer : layers) {
+      cells += layer.cells;
+      layer.first_vertex = vertices;
+      vertices += static_cast<std::uint32_t>(layer.passed.size());
     }
-    surface_.vertices.resize(passed_.size());
-    constexpr std::size_t kGrain = 256;
-    work.for_each(passed_.size(), kGrain, [&](std::size_t v) { surface_.vertices[v] = vertex(passed_[v]); });
     // The surface of a solid has twice the solid's Euler characteristic.
     surface_.euler = 2 * cells;
-    for (std::int32_t k = 1; k + 1 < box_.count_z; ++k) {
-      work.check_interrupted();
-      for (std::int32_t j = 1; j + 1 < box_.count_y; ++j) {
-        for (std::int32_t i = 1; i + 1 < box_.count_x; ++i) join_round(box_.index(i, j, k));
-      }
-    }
+    surface_.vertices.resize(vertices);
+    for_each_layer([&](std::int32_t, const Layer& layer) {
+      for (std::uint32_t n = 0; n < layer.passed.size(); ++n)
+        vertex_of_cube_[box_.index(layer.passed[n].i, layer.passed[n].j, layer.passed[n].k)] =
+            layer.first_vertex + n;
+    });
+    std::vector<Cube> passed;
+    passed.reserve(vertices);
+    for (const Layer& layer : layers) passed.insert(passed.end(), layer.passed.begin(), layer.passed.end());
+    constexpr std::size_t kGrain = 256;
+    work.for_each(passed.size(), kGrain, [&](std::size_t v) { surface_.vertices[v] = vertex(passed[v]); });
+    for_each_layer([&](std::int32_t, Layer& layer) {
+      for (const Cube& cube : layer.passed) join_round(box_.index(cube.i, cube.j, cube.k), layer.triangles);
+    });
+    for (const Layer& layer : layers)
+      surface_.triangles.insert(surface_.triangles.end(), layer.triangles.begin(), layer.triangles.end());
     return std::move(surface_);
   }
 
@@ -44,21 +66,37 @@ class Netter {
     unsigned set;
   };
 
+  // What is found about the cubes of a layer.
+  struct Layer {
+    std::vector<Cube> passed;
+    std::int64_t cells = 0;
+    std::uint32_t first_vertex = 0;
+    std::vector<Triangle> triangles;
+  };
+
   bool is_in(std::size_t node) const { return labels_[node] == piece_; }
 
-  // Nodes - edges + faces - cubes of the void, of those that begin at the cube's first corner. Notes the cube
-  // if the surface passes.
-  std::int64_t look_at(std::int32_t i, std::int32_t j, std::int32_t k) {
-    const std::array<std::size_t, 8> corners = cube_at(box_, i, j, k);
-    unsigned set = 0;
-    for (unsigned corner = 0; corner < 8; ++corner) set |= (is_in(corners[corner]) ? 1U : 0U) << corner;
-    if (set == 0) return 0;
-    const auto has = [set](unsigned mask) { return (set & mask) == mask ? 1 : 0; };
-    if (set != 255) {
-      vertex_of_cube_[corners[0]] = static_cast<std::uint32_t>(passed_.size());
-      passed_.push_back({i, j, k, set});
+  // Counts nodes - edges + faces - cubes of the void, of those that begin at the first corners of cubes. Notes the cubes that
+  // the surface passes.
+  void look_at_row(std::int32_t first, std::int32_t last, std::int32_t j, std::int32_t k,
+                   Layer& layer) const {
+    const std::array<std::size_t, 8> row = cube_at(box_, 0, j, k);
+    // Corners of a cube with the same place along x, as bits of their numbers.
+    const auto side_at = [&](std::int32_t i) {
+      unsigned set = 0;
+      for (const unsigned corner : {0U, 2U, 4U, 6U})
+        set |= (is_in(row[corner] + static_cast<std::size_t>(i)) ? 1U : 0U) << corner;
+      return set;
+    };
+    unsigned side = side_at(first);
+    for (std::int32_t i = first; i < last; ++i) {
+      const unsigned next = side_at(i + 1), set = side | next << 1;
+      side = next;
+      if (set == 0 || set == 255) continue;  // of a cube that is all in it come to 0
+      const auto has = [set](unsigned mask) { return (set & mask) == mask ? 1 : 0; };
+      layer.cells += has(1) - has(3) - has(5) - has(17) + has(15) + has(51) + has(85);
+      layer.passed.push_back({i, j, k, set});
     }
-    return has(1) - has(3) - has(5) - has(17) + has(15) + has(51) + has(85) - has(255);
   }
 
   // How deep in the void a node is, as far as it matters for where an edge passes its surface.
@@ -82,7 +120,8 @@ class Netter {
         const double here = level(corners[corner]), there = level(corners[end]);
         const double along = here == there ? 0.5 : std::clamp(here / (here - there), 0.02, 0.98);
         const auto step = [&](unsigned a) { return (corner >> a & 1U) + (a == axis ? along : 0.0); };
-        sum = sum + box_.at(i + step(0), j + step(1), k + step(2));
+        sum = sum +
+              box_.at_of_whole(i + box_.cut_x + step(0), j + box_.cut_y + step(1), k + box_.cut_z + step(2));
         ++count;
       }
       if (!is_in_piece || opened_.ball[corners[corner]] == kNone) continue;
@@ -109,8 +148,9 @@ class Netter {
     return false;
   }
 
-  // Where an edge from the node leaves or enters the void, the four cubes round the edge have a square.
-  void join_round(std::size_t node) {
+  // Where an edge from the node leaves or enters the void, the four cubes round the edge have a square. The cube that begins at
+  // the node is one of them.
+  void join_round(std::size_t node, std::vector<Triangle>& triangles) const {
     const std::array<std::size_t, 3> steps{1, box_.step_y(), box_.step_z()};
     const bool is_in_piece = is_in(node);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -124,8 +164,8 @@ class Netter {
       };
       const std::size_t first = diagonal(0, 2) <= diagonal(1, 3) ? 0 : 1;
       const auto corner = [&](std::size_t n) { return square[(first + n) % 4]; };
-      surface_.triangles.push_back({corner(0), corner(1), corner(2)});
-      surface_.triangles.push_back({corner(0), corner(2), corner(3)});
+      triangles.push_back({corner(0), corner(1), corner(2)});
+      triangles.push_back({corner(0), corner(2), corner(3)});
     }
   }
 
@@ -138,7 +178,6 @@ class Netter {
   std::int32_t piece_;
   const SurfacePlacer& placer_;
   std::vector<std::uint32_t> vertex_of_cube_;
-  std::vector<Cube> passed_;
   PieceSurface surface_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "core/disjoint_sets.h"
@@ -16,14 +17,14 @@ constexpr float kUncovered = -1e9F;
 // A node counts as covered if it is so deep in a ball, in spacings.
 constexpr float kLeastCover = 1e-3F;
 
-// Nodes of one line along an axis within a distance of a coordinate.
+// Nodes of one line along an axis within a distance of a coordinate. `cut`: nodes from the origin to its first one.
 struct NodeRange {
   std::int32_t first, last;
 
-  NodeRange(double middle, double reach, double origin, double spacing, std::int32_t count)
-      : first(std::max(0, static_cast<std::int32_t>(std::ceil((middle - reach - origin) / spacing)))),
+  NodeRange(double middle, double reach, double origin, double spacing, std::int32_t cut, std::int32_t count)
+      : first(std::max(0, static_cast<std::int32_t>(std::ceil((middle - reach - origin) / spacing)) - cut)),
         last(std::min(count - 1,
-                      static_cast<std::int32_t>(std::floor((middle + reach - origin) / spacing)))) {}
+                      static_cast<std::int32_t>(std::floor((middle + reach - origin) / spacing)) - cut)) {}
 };
 
 double square(double x) {
@@ -40,17 +41,51 @@ class Roller {
     const auto layers = static_cast<std::size_t>(box.count_z);
     std::vector<std::vector<RolledBall>> of_layer(layers);
     work.for_each(layers, 1, [&](std::size_t k) { of_layer[k] = balls_of(static_cast<std::int32_t>(k)); });
-    for (const std::vector<RolledBall>& balls : of_layer)
-      opened_.balls.insert(opened_.balls.end(), balls.begin(), balls.end());
-    if (has_room_for(own)) opened_.balls.push_back({own.centre, own.radius, kNone, true});
+    std::vector<BallsOfLayer> groups;
+    for (std::size_t k = 0; k < layers; ++k) add(of_layer[k], groups);
+    if (has_room_for(own)) add({{own.centre, own.radius, kNone, true}}, groups);
     constexpr std::size_t kGrain = 8;
     work.for_each_part(layers, kGrain, [&](std::size_t first, std::size_t last) {
-      for (std::uint32_t ball = 0; ball < opened_.balls.size(); ++ball)
-        cover(ball, static_cast<std::int32_t>(first), static_cast<std::int32_t>(last) - 1);
+      const auto first_layer = static_cast<std::int32_t>(first),
+                 last_layer = static_cast<std::int32_t>(last) - 1;
+      for (const BallsOfLayer& group : groups) {
+        if (!may_reach(group, first_layer, last_layer)) continue;
+        for (std::uint32_t ball = group.first; ball < group.last; ++ball)
+          cover(ball, first_layer, last_layer);
+      }
     });
   }
 
  private:
+  // Balls in the order in which they were found, and how low and high they reach.
+  struct BallsOfLayer {
+    std::uint32_t first = 0, last = 0;
+    double lowest = kInfinity, highest = -kInfinity;
+  };
+
+  void add(const std::vector<RolledBall>& balls, std::vector<BallsOfLayer>& groups) {
+    if (balls.empty()) return;
+    BallsOfLayer group{.first = static_cast<std::uint32_t>(opened_.balls.size())};
+    opened_.balls.insert(opened_.balls.end(), balls.begin(), balls.end());
+    group.last = static_cast<std::uint32_t>(opened_.balls.size());
+    for (const RolledBall& ball : balls) {
+      group.lowest = std::min(group.lowest, ball.centre.z - reach_of(ball));
+      group.highest = std::max(group.highest, ball.centre.z + reach_of(ball));
+    }
+    groups.push_back(group);
+  }
+
+  // Nodes just outside tell where the surface passes.
+  double reach_of(const RolledBall& ball) const { return ball.radius + 1.2 * nodes_.box.lattice.spacing; }
+
+  double height_of_layer(std::int32_t k) const {
+    return nodes_.box.origin().z + nodes_.box.lattice.spacing * (k + nodes_.box.cut_z);
+  }
+
+  bool may_reach(const BallsOfLayer& group, std::int32_t first_layer, std::int32_t last_layer) const {
+    return group.highest >= height_of_layer(first_layer) && group.lowest <= height_of_layer(last_layer);
+  }
+
   bool is_near_surface(std::size_t node) const {
     // The vertices that it places may be looked for this far from the node.
     constexpr double kReach = 1.3;
@@ -61,10 +96,9 @@ class Roller {
   // Not where something else than the region limits the nodes' balls.
   bool has_room_for(const Sphere& own) const {
     const NodeBox& box = nodes_.box;
-    const Vec3d place = (own.centre - box.at(0, 0, 0)) * (1 / box.lattice.spacing);
-    const auto nearest = [](double x) { return static_cast<std::int32_t>(std::lround(x)); };
-    const std::int32_t i = nearest(place.x), j = nearest(place.y), k = nearest(place.z);
-    if (i < 0 || j < 0 || k < 0 || i >= box.count_x || j >= box.count_y || k >= box.count_z) return false;
+    const auto middle = box.nearest(own.centre);
+    if (!middle) return false;
+    const auto [i, j, k] = *middle;
     const double expected = std::min(own.radius - box.lattice.spacing, nodes_.deepest);
     constexpr double kRounding = 1e-8;
     return own.radius >= nodes_.ball_radius && region_.behind_planes(own.centre) >= own.radius - kRounding &&
@@ -142,26 +176,25 @@ class Roller {
     const NodeBox& box = nodes_.box;
     const RolledBall& ball = opened_.balls[number];
     const double spacing = box.lattice.spacing;
-    // Nodes just outside tell where the surface passes.
-    const double reach = ball.radius + 1.2 * spacing;
-    const Vec3d origin = box.at(0, 0, 0);
-    if (ball.centre.z + reach < origin.z + spacing * first_layer ||
-        ball.centre.z - reach > origin.z + spacing * last_layer)
+    const double reach = reach_of(ball);
+    if (ball.centre.z + reach < height_of_layer(first_layer) ||
+        ball.centre.z - reach > height_of_layer(last_layer))
       return;
-    const NodeRange layers(ball.centre.z, reach, origin.z, spacing, box.count_z);
+    const Vec3d origin = box.origin();
+    const NodeRange layers(ball.centre.z, reach, origin.z, spacing, box.cut_z, box.count_z);
     for (std::int32_t k = std::max(layers.first, first_layer); k <= std::min(layers.last, last_layer); ++k) {
-      const double dz = square(origin.z + spacing * k - ball.centre.z);
+      const double dz = square(origin.z + spacing * (k + box.cut_z) - ball.centre.z);
       const double reach_y = std::sqrt(std::max(0.0, reach * reach - dz));
-      const NodeRange rows(ball.centre.y, reach_y, origin.y, spacing, box.count_y);
+      const NodeRange rows(ball.centre.y, reach_y, origin.y, spacing, box.cut_y, box.count_y);
       for (std::int32_t j = rows.first; j <= rows.last; ++j) {
-        const double dyz = dz + square(origin.y + spacing * j - ball.centre.y);
+        const double dyz = dz + square(origin.y + spacing * (j + box.cut_y) - ball.centre.y);
         const double reach_x = std::sqrt(std::max(0.0, reach * reach - dyz));
-        const NodeRange row(ball.centre.x, reach_x, origin.x, spacing, box.count_x);
+        const NodeRange row(ball.centre.x, reach_x, origin.x, spacing, box.cut_x, box.count_x);
         const std::size_t first = box.index(0, j, k);
         for (std::int32_t i = row.first; i <= row.last; ++i) {
           const std::size_t node = first + static_cast<std::size_t>(i);
           if (nodes_.has_ball(node)) continue;
-          const double squared = dyz + square(origin.x + spacing * i - ball.centre.x);
+          const double squared = dyz + square(origin.x + spacing * (i + box.cut_x) - ball.centre.x);
           // Nearer to the middle than the node would have to be for more.
           const double least = ball.radius - static_cast<double>(opened_.cover[node]);
           if (least <= 0 || squared >= least * least) continue;
@@ -214,27 +247,60 @@ std::array<bool, 256> make_well_composed() {
   return result;
 }
 
+// Of the cubes of one row that begin at node `i` or after, the first whose corners are not all in the void, nor all out of
+// it; or the row's last one or after. Many nodes at a time. `rows`: of the first corners, and those along y and z.
+std::size_t next_mixed(const std::array<const std::uint8_t*, 4>& rows, std::size_t i, std::size_t count) {
+  constexpr std::size_t kAtOnce = 8;
+  constexpr std::uint64_t kAllSet = 0x0101010101010101;
+  for (; i + kAtOnce <= count; i += kAtOnce - 1) {
+    std::uint64_t any = 0, all = kAllSet;
+    for (const std::uint8_t* row : rows) {
+      std::uint64_t nodes = 0;
+      std::memcpy(&nodes, row + i, kAtOnce);
+      any |= nodes;
+      all &= nodes;
+    }
+    if (any != 0 && all != kAllSet) return i;
+  }
+  return i;
+}
+
 // Takes nodes out of the void until every cube is well-composed: those without a ball of their own, or, where nodes
 // with one meet diagonally since the nodes between them were taken out, these.
 void make_well_composed(const CellNodes& nodes, std::vector<std::uint8_t>& is_void, SharedWork& work) {
   static const std::array<bool, 256> kWellComposed = make_well_composed();
   const NodeBox& box = nodes.box;
+  const auto rows = static_cast<std::size_t>(box.count_y), length = static_cast<std::size_t>(box.count_x);
+  // Of each row of nodes, the number of the look at a row of cubes by which some were taken out; of each row of cubes, of
+  // its last look: what has not changed since is well-composed.
+  std::vector<std::size_t> changed(rows * static_cast<std::size_t>(box.count_z), 1), seen(changed.size(), 0);
+  std::size_t looks = 1;
   for (bool changes = true; changes;) {
     changes = false;
     for (std::int32_t k = 0; k + 1 < box.count_z; ++k) {
       work.check_interrupted();
       for (std::int32_t j = 0; j + 1 < box.count_y; ++j) {
-        for (std::int32_t i = 0; i + 1 < box.count_x; ++i) {
-          const std::array<std::size_t, 8> corners = cube_at(box, i, j, k);
+        const std::size_t at = static_cast<std::size_t>(k) * rows + static_cast<std::size_t>(j);
+        if (std::max({changed[at], changed[at + 1], changed[at + rows], changed[at + rows + 1]}) <= seen[at])
+          continue;
+        seen[at] = ++looks;
+        const std::array<std::size_t, 8> first = cube_at(box, 0, j, k);
+        const std::array<const std::uint8_t*, 4> of_row{&is_void[first[0]], &is_void[first[2]],
+                                                        &is_void[first[4]], &is_void[first[6]]};
+        for (std::size_t i = next_mixed(of_row, 0, length); i + 1 < length;
+             i = next_mixed(of_row, i + 1, length)) {
           unsigned set = 0;
           for (unsigned corner = 0; corner < 8; ++corner)
-            set |= (is_void[corners[corner]] != 0 ? 1U : 0U) << corner;
+            set |= (is_void[first[corner] + i] != 0 ? 1U : 0U) << corner;
           if (kWellComposed[set]) continue;
-          const bool has_others = std::ranges::any_of(
-              corners, [&](std::size_t node) { return is_void[node] != 0 && !nodes.has_ball(node); });
-          for (const std::size_t node : corners) {
-            if (!has_others || !nodes.has_ball(node)) is_void[node] = 0;
+          const bool has_others = std::ranges::any_of(first, [&](std::size_t corner) {
+            return is_void[corner + i] != 0 && !nodes.has_ball(corner + i);
+          });
+          for (const std::size_t corner : first) {
+            if (!has_others || !nodes.has_ball(corner + i)) is_void[corner + i] = 0;
           }
+          // Also those of this row that were looked at before.
+          for (const std::size_t row : {at, at + 1, at + rows, at + rows + 1}) changed[row] = looks + 1;
           changes = true;
         }
       }
@@ -269,8 +335,10 @@ OpenedCell open_cell(const CellRegion& region, const CellNodes& nodes, const Sph
   Roller(region, nodes, opened).roll(own, work);
   const auto least = kLeastCover * static_cast<float>(nodes.box.lattice.spacing);
   opened.is_void.resize(nodes.box.size());
-  for (std::size_t node = 0; node < nodes.box.size(); ++node)
+  constexpr std::size_t kGrain = std::size_t{1} << 16;
+  work.for_each(nodes.box.size(), kGrain, [&](std::size_t node) {
     opened.is_void[node] = nodes.has_ball(node) || opened.cover[node] > least ? 1 : 0;
+  });
   make_well_composed(nodes, opened.is_void, work);
   return opened;
 }

@@ -1,6 +1,7 @@
 #include "printing/cells/shape_cells.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <fmt/format.h>
@@ -45,6 +46,26 @@ double volume_of(const std::vector<PlacedVertex>& vertices, const std::vector<Tr
   return std::abs(sum) / 6;
 }
 
+// A region opened by the ball, and what is made of it next: the largest piece that is worth it, if any.
+struct Opened {
+  OpenedCell cell;
+  std::vector<std::int32_t> labels;  // of nodes
+  std::optional<std::int32_t> piece;
+  bool has_others = false;  // that may be worth it
+};
+
+// What a roof leaves of a cell.
+struct BelowRoof {
+  CellNodes nodes;
+  Opened opened;
+};
+
+// A piece below its roof.
+struct Roofed {
+  std::vector<CellPlane> planes;   // of the cell and of the roof
+  std::optional<BelowRoof> below;  // absent: it needs no roof
+};
+
 class CellShaper {
  public:
   CellShaper(const SurfaceIndex& surface, const Packing& packing, const CellShape& shape,
@@ -65,7 +86,9 @@ class CellShaper {
     for (const Vec3d place : solid) keep_solid_about(nodes, place);
     std::vector<CellVoid> voids;
     constexpr int kMostPieces = 64;
-    for (int rounds = 0; nodes.box.size() > 0 && rounds < kMostPieces; ++rounds) {
+    for (int rounds = 0; rounds < kMostPieces; ++rounds) {
+      if (rounds > 0) nodes = cut_to_balls(nodes, nodes.depth, packing_.spheres[cell], work_);
+      if (nodes.box.size() == 0) break;
       const Opened opened = open(region, nodes, cell);
       if (!opened.piece) break;
       if (packing_.limits.roof.limits_ceilings()) {
@@ -79,27 +102,12 @@ class CellShaper {
       }
       voids.push_back(make(cell, region, surface, runs_of_piece(nodes.box, opened.labels, *opened.piece)));
       if (!opened.has_others) break;
-      keep_away_from(nodes, opened.labels, *opened.piece);
+      keep_away_from(nodes, nodes.box, opened.labels, *opened.piece);
     }
     return voids;
   }
 
  private:
-  // A region opened by the ball, and what is made of it next: the largest piece that is worth it, if any.
-  struct Opened {
-    OpenedCell cell;
-    std::vector<std::int32_t> labels;  // of nodes
-    std::optional<std::int32_t> piece;
-    bool has_others = false;  // that may be worth it
-  };
-
-  // A piece below its roof.
-  struct Roofed {
-    std::vector<CellPlane> planes;  // of the cell and of the roof
-    CellNodes nodes;
-    Opened opened;
-  };
-
   Opened open(const CellRegion& region, const CellNodes& nodes, std::uint32_t cell) const {
     const Sphere& own = packing_.spheres[cell];
     Opened opened;
@@ -135,27 +143,38 @@ class CellShaper {
     struct Narrowed {
       double share, bridge;
     };
+    std::vector<std::vector<CellPlane>> tried;
     for (const auto& [share, bridge] : {Narrowed{1, 1}, Narrowed{0.6, 1}, Narrowed{0, 1}, Narrowed{0.6, 0.8},
                                         Narrowed{0, 0.8}, Narrowed{0, 0.5}}) {
       Roof roof = packing_.limits.roof;
       roof.widest_ball *= bridge;
       const std::optional<Roofed> roofed = put_roof(planes, nodes, opened, cell, roof, share);
-      if (!roofed) continue;
+      if (!roofed ||
+          std::ranges::any_of(tried, [&](const auto& other) { return are_same(other, roofed->planes); }))
+        continue;
+      tried.push_back(roofed->planes);
+      const CellNodes& left = roofed->below ? roofed->below->nodes : nodes;
+      const Opened& piece = roofed->below ? roofed->below->opened : opened;
       const CellRegion region(roofed->planes, surface_, near_, packing_.limits.wall);
-      const PieceSurface surface = surface_of(region, roofed->nodes, roofed->opened);
+      const PieceSurface surface = surface_of(region, left, piece);
       if (const auto loose = middle_of_loose_solid(surface)) {
         keep_attached(nodes, *loose);
         return;
       }
-      CellVoid made =
-          make(cell, region, surface, runs_of_piece(nodes.box, roofed->opened.labels, *roofed->opened.piece));
+      CellVoid made = make(cell, region, surface, runs_of_piece(left.box, piece.labels, *piece.piece));
       if (!is_bridged(made.surface)) continue;
       made.has_roof = roofed->planes.size() > planes.size();
       voids.push_back(std::move(made));
-      keep_away_from(nodes, roofed->opened.labels, *roofed->opened.piece);
+      keep_away_from(nodes, left.box, piece.labels, *piece.piece);
       return;
     }
     fill(nodes, opened);
+  }
+
+  static bool are_same(const std::vector<CellPlane>& one, const std::vector<CellPlane>& other) {
+    return std::ranges::equal(one, other, [](const CellPlane& a, const CellPlane& b) {
+      return a.normal == b.normal && a.offset == b.offset;
+    });
   }
 
   bool is_bridged(const Mesh& surface) const {
@@ -173,22 +192,26 @@ class CellShaper {
                                  const Opened& opened, std::uint32_t cell, const Roof& roof,
                                  double share) const {
     constexpr int kMostTries = 3;
-    Roofed roofed{{planes.begin(), planes.end()}, nodes, opened};
+    Roofed roofed{{planes.begin(), planes.end()}, std::nullopt};
     std::vector<FlatCeiling> ceilings;
     for (int tries = 0; tries < kMostTries; ++tries) {
       const CellRegion region(roofed.planes, surface_, near_, packing_.limits.wall);
+      const CellNodes& left = roofed.below ? roofed.below->nodes : nodes;
+      const Opened& piece = roofed.below ? roofed.below->opened : opened;
       const std::vector<FlatCeiling> found =
-          flat_ceilings(region, roofed.nodes, roofed.opened.labels, *roofed.opened.piece, roof, share);
+          flat_ceilings(region, left, piece.labels, *piece.piece, roof, share, work_);
       if (found.empty()) return roofed;
       ceilings.insert(ceilings.end(), found.begin(), found.end());
       const std::vector<CellPlane> sides = roof_below(ceilings, nodes, opened.labels, *opened.piece, roof);
       if (sides.empty()) return std::nullopt;
-      roofed = {{planes.begin(), planes.end()}, nodes, {}};
+      roofed.planes.assign(planes.begin(), planes.end());
       roofed.planes.insert(roofed.planes.end(), sides.begin(), sides.end());
-      keep_behind(roofed.nodes, sides);
-      roofed.opened =
-          open(CellRegion(roofed.planes, surface_, near_, packing_.limits.wall), roofed.nodes, cell);
-      if (!roofed.opened.piece) return std::nullopt;
+      roofed.below.emplace();
+      roofed.below->nodes = cut_to_balls(nodes, depth_behind(sides, nodes), packing_.spheres[cell], work_);
+      if (roofed.below->nodes.box.size() == 0) return std::nullopt;
+      roofed.below->opened =
+          open(CellRegion(roofed.planes, surface_, near_, packing_.limits.wall), roofed.below->nodes, cell);
+      if (!roofed.below->opened.piece) return std::nullopt;
     }
     return roofed;
   }
@@ -198,18 +221,23 @@ class CellShaper {
       if (opened.labels[node] == *opened.piece) nodes.depth[node] = -1;
   }
 
-  static void keep_behind(CellNodes& nodes, std::span<const CellPlane> planes) {
+  // That of each node behind planes.
+  std::vector<float> depth_behind(std::span<const CellPlane> planes, const CellNodes& nodes) const {
     const NodeBox& box = nodes.box;
-    for (std::int32_t k = 0; k < box.count_z; ++k) {
+    std::vector<float> depth = nodes.depth;
+    work_.for_each(static_cast<std::size_t>(box.count_z), 1, [&](std::size_t layer) {
+      const auto k = static_cast<std::int32_t>(layer);
       for (std::int32_t j = 0; j < box.count_y; ++j) {
         for (std::int32_t i = 0; i < box.count_x; ++i) {
-          const std::size_t node = box.index(i, j, k);
-          if (!nodes.has_ball(node)) continue;
+          float& own = depth[box.index(i, j, k)];
+          if (own < 0) continue;
           const Vec3d at = box.at(i, j, k);
-          for (const CellPlane& plane : planes) limit(nodes, node, plane.offset - dot(plane.normal, at));
+          for (const CellPlane& plane : planes)
+            own = limited(own, plane.offset - dot(plane.normal, at), nodes.ball_radius);
         }
       }
-    }
+    });
+    return depth;
   }
 
   double volume_of_nodes(std::size_t count) const {
@@ -220,18 +248,45 @@ class CellShaper {
                         const std::vector<std::int32_t>& labels, std::int32_t piece,
                         const Sphere& own) const {
     const NodeBox& box = nodes.box;
-    const double least = packing_.limits.min_radius;
+    if (is_about_centre(nodes, labels, piece, own)) return true;
+    const double least = packing_.limits.min_radius, needed = region.wall() + least;
     for (std::int32_t k = 0; k < box.count_z; ++k) {
       for (std::int32_t j = 0; j < box.count_y; ++j) {
         for (std::int32_t i = 0; i < box.count_x; ++i) {
           const std::size_t node = box.index(i, j, k);
           if (labels[node] != piece || !nodes.has_ball(node)) continue;
           const Vec3d at = box.at(i, j, k);
-          // About its own sphere's centre a ball fits that is at least as large as the least.
-          if (length(at - own.centre) < lattice_.spacing) return true;
-          if (region.behind_planes(at) < least) continue;
-          const double needed = region.wall() + least;
-          if (region.surface_near(at, needed, nodes.facet[node]).distance >= needed) return true;
+          double missing = least - region.behind_planes(at);
+          if (missing <= 0) missing = needed - region.surface_near(at, needed, nodes.facet[node]).distance;
+          if (missing <= 0) return true;
+          // Depths change by no more than the way between two points, so those that follow do not do either.
+          constexpr double kSurely = 1 - 1e-9;
+          i += static_cast<std::int32_t>(missing * kSurely / lattice_.spacing);
+        }
+      }
+    }
+    return false;
+  }
+
+  // About its own sphere's centre a ball fits that is at least as large as the least.
+  bool is_about_centre(const CellNodes& nodes, const std::vector<std::int32_t>& labels, std::int32_t piece,
+                       const Sphere& own) const {
+    const NodeBox& box = nodes.box;
+    const Vec3d place = (own.centre - box.at(0, 0, 0)) * (1 / lattice_.spacing);
+    const auto range = [](double middle, std::int32_t count) {
+      return std::pair{std::max(0, static_cast<std::int32_t>(std::floor(middle)) - 1),
+                       std::min(count - 1, static_cast<std::int32_t>(std::ceil(middle)) + 1)};
+    };
+    const auto [first_x, last_x] = range(place.x, box.count_x);
+    const auto [first_y, last_y] = range(place.y, box.count_y);
+    const auto [first_z, last_z] = range(place.z, box.count_z);
+    for (std::int32_t k = first_z; k <= last_z; ++k) {
+      for (std::int32_t j = first_y; j <= last_y; ++j) {
+        for (std::int32_t i = first_x; i <= last_x; ++i) {
+          const std::size_t node = box.index(i, j, k);
+          if (labels[node] == piece && nodes.has_ball(node) &&
+              length(box.at(i, j, k) - own.centre) < lattice_.spacing)
+            return true;
         }
       }
     }
@@ -289,21 +344,28 @@ class CellShaper {
     const kernels::HostTriangleBvh bvh(positions, fewer.triangles);
     work_.check_interrupted();
     const NearFacets facets(bvh.view());
-    std::vector<double> squared(dense.vertices.size(), 0);
+    // Only the largest distance counts: a vertex that is known to be no farther off is not looked at any further.
+    std::atomic<double> largest = 0;
     constexpr std::size_t kGrain = 512;
-    work_.for_each_part(squared.size(), kGrain, [&](std::size_t first, std::size_t last) {
-      kernels::NearestFacet near{kInfinity, kNone};
+    work_.for_each_part(dense.vertices.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      std::uint32_t facet = kNone;
       for (std::size_t v = first; v < last; ++v) {
         if (is_left[v] != 0) continue;
         // Vertices that follow each other are near each other.
         const Vec3d at = dense.vertices[v].at;
-        if (near.facet != kNone)
-          near.distance_squared = kernels::distance_squared_to_facet(at, facets.facet(near.facet));
+        kernels::NearestFacet near{kInfinity, facet};
+        if (facet != kNone)
+          near.distance_squared = kernels::distance_squared_to_facet(at, facets.facet(facet));
+        double known = largest.load(std::memory_order_relaxed);
+        if (near.distance_squared <= known) continue;
         near = facets.nearer_than(at, near);
-        squared[v] = near.distance_squared;
+        facet = near.facet;
+        while (near.distance_squared > known &&
+               !largest.compare_exchange_weak(known, near.distance_squared, std::memory_order_relaxed)) {
+        }
       }
     });
-    return std::sqrt(*std::ranges::max_element(squared));
+    return std::sqrt(largest.load());
   }
 
   // Where a void would surround a piece of solid, which would then be loose: the middle of that.
@@ -358,25 +420,59 @@ class CellShaper {
   }
 
   // No more depth at a node than this.
-  static void limit(CellNodes& nodes, std::size_t node, double depth) {
-    if (!nodes.has_ball(node) || depth >= static_cast<double>(nodes.depth[node])) return;
-    nodes.depth[node] = depth < nodes.ball_radius ? -1.F : static_cast<float>(depth);
+  static float limited(float own, double depth, double ball_radius) {
+    if (own < 0 || depth >= static_cast<double>(own)) return own;
+    return depth < ball_radius ? -1.F : static_cast<float>(depth);
   }
 
-  // What is left of the cell: without a piece, and no nearer to it than the gap.
-  void keep_away_from(CellNodes& nodes, const std::vector<std::int32_t>& labels, std::int32_t piece) const {
+  static void limit(CellNodes& nodes, std::size_t node, double depth) {
+    nodes.depth[node] = limited(nodes.depth[node], depth, nodes.ball_radius);
+  }
+
+  // What is left of the cell: without a piece, and no nearer to it than the gap. `of_labels`: the box of their nodes, which is
+  // a part of the cell's.
+  void keep_away_from(CellNodes& nodes, const NodeBox& of_labels, const std::vector<std::int32_t>& labels,
+                      std::int32_t piece) const {
     const NodeBox& box = nodes.box;
     // Nodes tell to within a spacing where a surface is, and its vertices are placed up to another away.
     const double kept = packing_.limits.gap + 3 * lattice_.spacing;
     const double reach = kept + nodes.deepest;
     const auto steps = static_cast<std::int32_t>(reach / lattice_.spacing);
-    const std::vector<std::int32_t> squared = squared_distances(
-        box, [&](std::size_t node) { return labels[node] == piece; }, steps);
-    for (std::size_t node = 0; node < box.size(); ++node) {
-      if (squared[node] == kFarAway) continue;
-      const double apart = lattice_.spacing * std::sqrt(squared[node]);
-      limit(nodes, node, labels[node] == piece ? -1 : apart - kept);
+    NodeExtent extent = extent_of(
+        of_labels, [&](std::size_t node) { return labels[node] == piece; }, work_);
+    const std::array<std::int32_t, 3> to_cell{of_labels.x - box.x, of_labels.y - box.y, of_labels.z - box.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      extent.first[axis] += to_cell[axis];
+      extent.last[axis] += to_cell[axis];
     }
+    extent = extent.grown(steps, box);
+    const NodeBox near = part_of(box, extent);
+    std::vector<std::uint8_t> is_in_piece(near.size(), 0);
+    const auto for_each_row = [&](const auto& f) {
+      work_.for_each(static_cast<std::size_t>(near.count_z), 1, [&](std::size_t layer) {
+        const auto k = static_cast<std::int32_t>(layer);
+        for (std::int32_t j = 0; j < near.count_y; ++j) f(j, k);
+      });
+    };
+    for_each_row([&](std::int32_t j, std::int32_t k) {
+      const std::int32_t y = j + extent.first[1] - to_cell[1], z = k + extent.first[2] - to_cell[2];
+      if (y < 0 || z < 0 || y >= of_labels.count_y || z >= of_labels.count_z) return;
+      for (std::int32_t i = 0; i < near.count_x; ++i) {
+        const std::int32_t x = i + extent.first[0] - to_cell[0];
+        if (x < 0 || x >= of_labels.count_x) continue;
+        is_in_piece[near.index(i, j, k)] = labels[of_labels.index(x, y, z)] == piece ? 1 : 0;
+      }
+    });
+    const std::vector<std::int32_t> squared = squared_distances(near, is_in_piece, steps, work_);
+    for_each_row([&](std::int32_t j, std::int32_t k) {
+      for (std::int32_t i = 0; i < near.count_x; ++i) {
+        const std::size_t node = near.index(i, j, k);
+        if (squared[node] == kFarAway) continue;
+        const double apart = lattice_.spacing * std::sqrt(squared[node]);
+        limit(nodes, box.index(i + extent.first[0], j + extent.first[1], k + extent.first[2]),
+              is_in_piece[node] != 0 ? -1 : apart - kept);
+      }
+    });
   }
 
   const SurfaceIndex& surface_;

@@ -162,13 +162,16 @@ class CellChecker {
     const std::size_t count = parts_.empty() ? 0 : parts_.back().end() - first;
     const double wall = expected_.packing.limits.wall;
     const double looked_for = wall + expected_.tolerance;
-    std::vector<double> distances(count);
+    // Of each triangle as far as it is nearer than those before, whichever these are: the least of all is the same.
+    std::atomic<double> nearest = looked_for;
     for_each_polled(count, kTrianglesPerPiece, monitor_, [&](std::size_t i) {
-      distances[i] = distance_to_surface(facet_of(mesh_, mesh_.triangles[first + i]), expected_.surface.bvh(),
-                                         looked_for);
+      double known = nearest.load(std::memory_order_relaxed);
+      const double distance =
+          distance_to_surface(facet_of(mesh_, mesh_.triangles[first + i]), expected_.surface.bvh(), known);
+      while (distance < known && !nearest.compare_exchange_weak(known, distance, std::memory_order_relaxed)) {
+      }
     });
-    double least = looked_for;
-    for (const double distance : distances) least = std::min(least, distance);
+    const double least = nearest.load();
     if (least < wall - kLimitError) fail_check("the wall is {:.9g} mm, the limit {:.9g} mm", least, wall);
     return least;
   }

@@ -91,7 +91,10 @@ bool HoleShowing::is_on_allowed_side(Vec3d place) const {
 }
 
 bool HoleShowing::is_allowed(const Tube& hole) const {
-  if (request_.avoids_plate && reaches_plate(hole)) return false;
+  return !(request_.avoids_plate && reaches_plate(hole)) && is_on_sides(hole);
+}
+
+bool HoleShowing::is_on_sides(const Tube& hole) const {
   const HoleSides& sides = request_.sides;
   if (sides.is_anywhere()) return true;
   if (!is_on_allowed_side(hole.end)) return false;

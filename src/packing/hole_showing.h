@@ -21,6 +21,9 @@ class HoleShowing {
 
   // Does the request allow a hole where this one meets the surface, with all of its rim?
   bool is_allowed(const Tube& hole) const;
+  // The two reasons why it may not.
+  bool reaches_plate(const Tube& hole) const;
+  bool is_on_sides(const Tube& hole) const;
 
   // How much the place shows, 0 to 1: the share of what a lamp at each direction of view would give it that the model does not
   // keep off (ambient exposure, by rays). Views from below count a third, and all of them a little less from the back
@@ -30,7 +33,6 @@ class HoleShowing {
  private:
   // Places on the surface where lines of the hole's side leave it.
   std::vector<Vec3d> rim_of(const Tube& hole) const;
-  bool reaches_plate(const Tube& hole) const;
   bool is_on_allowed_side(Vec3d place) const;
 
   const TubeClearance& clearance_;

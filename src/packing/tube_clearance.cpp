@@ -16,65 +16,20 @@ namespace {
 // A point this near to the surface is on it, mm: the facet there is found at once.
 constexpr double kOnSurface = 1e-6;
 
-// The nearest facet along a ray, for the walk of a hierarchy.
-struct RayMetric {
-  Vec3d start, direction, inverse;
-  double best;
-  kernels::View<const kernels::Facet> facets;
-
-  RayMetric(Vec3d from, Vec3d along, double longest, kernels::View<const kernels::Facet> of)
-      : start(from),
-        direction(along),
-        inverse{1 / along.x, 1 / along.y, 1 / along.z},
-        best(longest),
-        facets(of) {}
-
-  double limit() const { return best; }
-
-  // Where the ray enters the box, which may be an empty one, or just before.
-  double bound(const Box3f& box) const {
-    if (box.lower.x > box.upper.x) return kInfinity;
-    double enters = 0, leaves = kInfinity;
-    const auto clip = [&](double least, double most, double from, double along, double per_length) {
-      if (along == 0) {
-        if (from < least || from > most) leaves = -kInfinity;
-        return;
-      }
-      const double a = (least - from) * per_length, b = (most - from) * per_length;
-      enters = std::max(enters, std::min(a, b));
-      leaves = std::min(leaves, std::max(a, b));
-    };
-    const Vec3d lower = to_double(box.lower), upper = to_double(box.upper);
-    clip(lower.x, upper.x, start.x, direction.x, inverse.x);
-    clip(lower.y, upper.y, start.y, direction.y, inverse.y);
-    clip(lower.z, upper.z, start.z, direction.z, inverse.z);
-    // More than products are rounded by.
-    constexpr double kRounding = 1e-12;
-    return enters * (1 - kRounding) > leaves * (1 + kRounding) ? kInfinity : enters * (1 - kRounding);
-  }
-
-  // After T. Moeller and B. Trumbore, "Fast, minimum storage ray/triangle intersection" (1997).
-  void visit(std::uint32_t i) {
-    const Vec3d a = to_double(facets[i].a);
-    const Vec3d ab = to_double(facets[i].b) - a, ac = to_double(facets[i].c) - a;
-    const Vec3d p = cross(direction, ac);
-    const double determinant = dot(ab, p);
-    if (determinant == 0) return;
-    const Vec3d from_a = start - a;
-    const double u = dot(from_a, p) / determinant;
-    if (!(u >= 0 && u <= 1)) return;
-    const Vec3d q = cross(from_a, ab);
-    const double v = dot(direction, q) / determinant;
-    const double t = dot(ac, q) / determinant;
-    if (v >= 0 && u + v <= 1 && t > 0 && t < best) best = t;
-  }
-};
+// Of unit length; 0 if the facet has no area.
+Vec3d normal_of(const kernels::Facet& facet) {
+  const Vec3d a = to_double(facet.a);
+  const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);
+  const double size = length(normal);
+  return size > 0 ? normal * (1 / size) : Vec3d{0, 0, 0};
+}
 
 }  // namespace
 
 TubeClearance::TubeClearance(const SurfaceIndex& surface, const Packing& packing, double longest,
                              double widest_radius, const SurfaceIndex* kept)
     : bvh_(surface.bvh()),
+      rays_(surface.bvh()),
       kept_(kept),
       voids_(shapes_of(packing.spheres, packing.limits.roof)),
       limits_(packing.limits),
@@ -104,24 +59,19 @@ double TubeClearance::to_surface(Vec3d point, double limit) const {
 }
 
 std::optional<double> TubeClearance::first_hit(Vec3d start, Vec3d direction, double longest) const {
-  RayMetric metric(start, direction, longest, bvh_.facets);
-  bvh_.walk(metric);
-  if (metric.best >= longest) return std::nullopt;
-  return metric.best;
+  const auto hit = rays_.first_hit(start, direction, longest);
+  return hit ? std::optional(hit->along) : std::nullopt;
+}
+
+std::optional<TubeClearance::Hit> TubeClearance::first_hit_with_normal(Vec3d start, Vec3d direction,
+                                                                       double longest) const {
+  const auto hit = rays_.first_hit(start, direction, longest);
+  if (!hit) return std::nullopt;
+  return Hit{hit->along, normal_of(bvh_.facets[hit->facet])};
 }
 
 bool TubeClearance::is_hit(Vec3d start, Vec3d direction, double longest) const {
-  // The first that is found ends the walk: nothing is nearer than that.
-  struct AnyHit : RayMetric {
-    using RayMetric::RayMetric;
-    void visit(std::uint32_t i) {
-      const double before = best;
-      RayMetric::visit(i);
-      if (best < before) best = -kInfinity;
-    }
-  } metric(start, direction, longest, bvh_.facets);
-  bvh_.walk(metric);
-  return metric.best < longest;
+  return rays_.is_hit(start, direction, longest);
 }
 
 Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
@@ -132,11 +82,7 @@ Vec3d TubeClearance::nearest_on_surface(Vec3d point) const {
 Vec3d TubeClearance::normal_near(Vec3d point) const {
   kernels::NearestFacet nearest = bvh_.nearest(point, kOnSurface * kOnSurface);
   if (nearest.facet == kNone) nearest = bvh_.nearest(point, kInfinity);
-  const kernels::Facet& facet = bvh_.facets[nearest.facet];
-  const Vec3d a = to_double(facet.a);
-  const Vec3d normal = cross(to_double(facet.b) - a, to_double(facet.c) - a);
-  const double size = length(normal);
-  return size > 0 ? normal * (1 / size) : Vec3d{0, 0, 0};
+  return normal_of(bvh_.facets[nearest.facet]);
 }
 
 bool TubeClearance::keeps_wall(const Tube& tube) const {

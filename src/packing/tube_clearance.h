@@ -9,6 +9,7 @@
 #include "core/packing.h"
 #include "core/surface_index.h"
 #include "core/void_shape.h"
+#include "packing/ray_facets.h"
 
 namespace aerate {
 
@@ -28,6 +29,13 @@ class TubeClearance {
   // How far it is from a point along a direction (unit) to the surface; nullopt if more than `longest`. A ray
   // through an edge may miss both of its triangles.
   std::optional<double> first_hit(Vec3d start, Vec3d direction, double longest) const;
+
+  // The same with the outward normal of the triangle that is met, 0 if that has no area.
+  struct Hit {
+    double along;
+    Vec3d normal;
+  };
+  std::optional<Hit> first_hit_with_normal(Vec3d start, Vec3d direction, double longest) const;
 
   // Whether there is any: as first_hit, at less cost.
   bool is_hit(Vec3d start, Vec3d direction, double longest) const;
@@ -67,6 +75,7 @@ class TubeClearance {
   bool keeps_away(const Tube& tube, double most, double slope) const;
 
   kernels::TriangleBvhView bvh_;
+  RayFacets rays_;
   const SurfaceIndex* kept_;
   std::vector<VoidShape> voids_;
   PackingLimits limits_;

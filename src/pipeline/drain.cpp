@@ -1,9 +1,11 @@
 #include "pipeline/drain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -329,25 +331,31 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
   const DrainableModel drainable{surface, outward.winding(), kept_in(model),
                                  lowest_along(model.mesh, limits.roof.up)};
   std::vector<Tube> refused;
+  CellDrainagePlanner planner(drainable, cells, limits, *options.drainage, monitor);
+  CellCarver carver(model.mesh, surface, cells, tolerance);
+  // Plans differ in few holes. By void and ends.
+  std::map<std::array<double, 7>, bool> known;
   const auto can_open = [&](const Tube& tube, std::uint32_t from) {
-    return !is_among(refused, tube) &&
-           may_be_cut(model.mesh, surface, cells.voids[from], tube, limits.roof, tolerance) &&
-           !is_crossed_near(model.mesh, surface, tube);
+    if (is_among(refused, tube)) return false;
+    const auto [place, is_new] = known.try_emplace({static_cast<double>(from), tube.start.x, tube.start.y,
+                                                    tube.start.z, tube.end.x, tube.end.y, tube.end.z});
+    if (is_new)
+      place->second = may_be_cut(model.mesh, surface, cells.voids[from], tube, limits.roof, tolerance) &&
+                      !is_crossed_near(model.mesh, surface, tube);
+    return place->second;
   };
   const auto can_open_wall = [&](const Tube& window) { return !is_among(refused, window); };
   const auto drained_under = [&](const DrainageRequest& request) -> DrainedCells {
     while (true) {
-      PlannedCellDrainage planned =
-          plan_cell_drainage(drainable, cells, limits, request, can_open, can_open_wall, monitor);
-      CellVoids kept = with_only(cells, planned.kept);
-      auto carved = carve_drained_cells(model.mesh, surface, kept, planned.plan, tolerance, monitor);
+      PlannedCellDrainage planned = planner.plan(request, can_open, can_open_wall);
+      auto carved = carver.carve(planned.kept, planned.plan, monitor);
       auto* solid = std::get_if<Solid>(&carved);
       const std::vector<Tube> unfit =
           solid != nullptr ? tubes_at_wide_ceilings(*solid, planned.plan, limits.roof, tolerance)
                            : tubes_of(std::get<UncutTubes>(carved), planned.plan);
       if (unfit.empty()) {
         DrainedVoids voids{request, std::move(planned.plan), planned.dropped};
-        return {std::move(kept), std::move(voids), std::move(*solid)};
+        return {with_only(cells, planned.kept), std::move(voids), std::move(*solid)};
       }
       for (const Tube& tube : unfit) {
         if (refused.size() >= kMostRefused) throw too_many_refused(tube, solid == nullptr, limits.roof);

@@ -453,6 +453,47 @@ TEST_F(CheckDrainedCells, MeasuresASoundResult) {
   EXPECT_LT(facts.volume_removed, 1.03 * planned);
 }
 
+// A void that is cut as before is not cut again: nobody sees that.
+TEST_F(CheckDrainedCells, CarvedByTheCarverOfOtherPlans) {
+  const SurfaceIndex surface(sound_.model);
+  const CellVoids all = sound_.cells;
+  Monitor silent;
+  CellCarver carver(sound_.model, surface, all, kTolerance);
+  const auto expect_own = [&](const std::vector<std::uint32_t>& kept, const DrainagePlan& plan) {
+    CellVoids some = all;
+    some.voids.clear();
+    for (const std::uint32_t i : kept) some.voids.push_back(all.voids[i]);
+    const auto shared = std::get<Solid>(carver.carve(kept, plan, silent));
+    const auto own =
+        std::get<Solid>(carve_drained_cells(sound_.model, surface, some, plan, kTolerance, silent));
+    EXPECT_EQ(shared.mesh.positions, own.mesh.positions);
+    EXPECT_EQ(shared.mesh.triangles, own.mesh.triangles);
+  };
+  expect_own({0, 1, 2}, plan());
+  expect_own({0, 1, 2}, plan());
+  // Of the middle void another wall is opened elsewhere, and the first void has another hole.
+  DrainagePlan moved = plan();
+  for (Vec3d* end : {&moved.channels[1].tube.start, &moved.channels[1].tube.end}) end->z += 2;
+  for (Vec3d* end : {&moved.holes[0].tube.start, &moved.holes[0].tube.end}) end->y -= 1.5;
+  expect_own({0, 1, 2}, moved);
+  expect_own({0, 1, 2}, plan());
+  // Without the last.
+  DrainagePlan fewer = plan();
+  fewer.channels.pop_back();
+  fewer.holes[1] = fewer.holes[0];
+  fewer.holes[1].from = 1;
+  for (Vec3d* end : {&fewer.holes[1].tube.start, &fewer.holes[1].tube.end}) end->x += 15;
+  expect_own({0, 1}, fewer);
+  fewer = plan();
+  fewer.channels = {plan().channels[1]};
+  fewer.channels[0].from = 0;
+  fewer.channels[0].to = 1;
+  fewer.holes[0].from = 0;
+  for (Vec3d* end : {&fewer.holes[0].tube.start, &fewer.holes[0].tube.end}) end->x += 15;
+  fewer.holes[1].from = 1;
+  expect_own({1, 2}, fewer);
+}
+
 TEST_F(CheckDrainedCells, AMovedTriangleOfTheOuterSurface) {
   mesh().positions[mesh().triangles[0][0]].x += 0.01F;
   expect_found("is not the one of the model");

@@ -38,6 +38,49 @@ TEST(CellDrainage, OfTwoBoxesLeavesWhatIsBelowTheSill) {
   EXPECT_LE(planned.plan.pools.after_both, planned.plan.pools.upright);
 }
 
+// What is looked up for one plan enters no other.
+TEST(CellDrainage, PlansOfOnePlannerAreThoseOfTheirOwn) {
+  const std::vector<Box> boxes = equal_boxes(4, 19.5);
+  const Mesh model = block_round(boxes);
+  const CellVoids cells = row_of(boxes);
+  const SurfaceIndex surface(model);
+  const DrainableModel drainable{surface, surface.winding(), nullptr, 0};
+  Monitor monitor;
+  DrainageRequest anywhere = request_of(), off_plate = anywhere, hidden = anywhere;
+  off_plate.avoids_plate = hidden.avoids_plate = true;
+  hidden.worth_of_hiding = 0.9;
+  const CanOpenCell not_first = [](const Tube&, std::uint32_t from) { return from != 0; };
+  const CanOpenWall always = [](const Tube&) { return true; };
+  const CanOpenWall only_high = [](const Tube& window) { return window.start.z > 12; };
+  CellDrainagePlanner planner(drainable, cells, limits_of(), anywhere, monitor);
+  const auto expect_own = [&](const DrainageRequest& request, const CanOpenCell& can_open,
+                              const CanOpenWall& can_open_wall) {
+    const PlannedCellDrainage shared = planner.plan(request, can_open, can_open_wall);
+    const PlannedCellDrainage own =
+        plan_cell_drainage(drainable, cells, limits_of(), request, can_open, can_open_wall, monitor);
+    EXPECT_EQ(shared.kept, own.kept);
+    ASSERT_EQ(shared.plan.holes.size(), own.plan.holes.size());
+    for (std::size_t i = 0; i < own.plan.holes.size(); ++i) {
+      EXPECT_EQ(shared.plan.holes[i].tube.start, own.plan.holes[i].tube.start);
+      EXPECT_EQ(shared.plan.holes[i].tube.end, own.plan.holes[i].tube.end);
+      EXPECT_EQ(shared.plan.holes[i].shows, own.plan.holes[i].shows);
+    }
+    ASSERT_EQ(shared.plan.channels.size(), own.plan.channels.size());
+    for (std::size_t i = 0; i < own.plan.channels.size(); ++i)
+      EXPECT_EQ(shared.plan.channels[i].tube.start, own.plan.channels[i].tube.start);
+    EXPECT_EQ(shared.plan.pools.after_both, own.plan.pools.after_both);
+  };
+  expect_own(off_plate, kAlways, always);
+  expect_own(anywhere, kAlways, always);
+  expect_own(hidden, not_first, only_high);
+  expect_own(off_plate, kAlways, always);
+  // They differ.
+  EXPECT_NE(planner.plan(anywhere, kAlways, always).plan.holes[0].tube.end,
+            planner.plan(off_plate, kAlways, always).plan.holes[0].tube.end);
+  EXPECT_NE(planner.plan(anywhere, kAlways, always).plan.channels[0].tube.start,
+            planner.plan(anywhere, kAlways, only_high).plan.channels[0].tube.start);
+}
+
 // The second void has a foot below the wall that the two share; what stays in it runs out upside down through
 // a window high up.
 TEST(CellDrainage, WindowsBesideTheTreeLetOutUpsideDownWhatStaysUpright) {

@@ -270,11 +270,12 @@ AirColumns air_columns(const Mesh& upright, const kernels::WindingView& winding,
   columns.count_x = count(box.upper.x - box.lower.x);
   columns.count_y = count(box.upper.y - box.lower.y);
   add_spans(columns, winding);
+  std::array<std::vector<Join>, kFamilies> of_family;
+  tbb::parallel_for(0, kFamilies, [&](int family) {
+    of_family[static_cast<std::size_t>(family)] = joins_of(columns, upright, family);
+  });
   std::vector<Join> joins;
-  for (int family = 0; family < kFamilies; ++family) {
-    const std::vector<Join> more = joins_of(columns, upright, family);
-    joins.insert(joins.end(), more.begin(), more.end());
-  }
+  for (const std::vector<Join>& more : of_family) joins.insert(joins.end(), more.begin(), more.end());
   add_passages(columns, joins);
   return columns;
 }

@@ -1,5 +1,6 @@
 #include "packing/cells/cell_drainage.h"
 
+#include <memory>
 #include <utility>
 
 #include "packing/cells/cell_drainage_draft.h"
@@ -15,12 +16,17 @@ constexpr const char* kOrSpheres = ", or --shape spheres";
 
 }  // namespace
 
-PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVoids& cells,
-                                       const PackingLimits& limits, const DrainageRequest& request,
-                                       const CanOpenCell& can_open, const CanOpenWall& can_open_wall,
-                                       Monitor& monitor) {
-  CellDrainageTask task(model, cells, limits, request, can_open, monitor);
-  std::erase_if(task.windows, [&](const CellWindow& window) { return !can_open_wall(window.channel.tube); });
+CellDrainagePlanner::CellDrainagePlanner(const DrainableModel& model, const CellVoids& cells,
+                                         const PackingLimits& limits, const DrainageRequest& request,
+                                         Monitor& monitor)
+    : ground_(std::make_unique<CellDrainageGround>(model, cells, limits, request, monitor)),
+      monitor_(monitor) {}
+
+CellDrainagePlanner::~CellDrainagePlanner() = default;
+
+PlannedCellDrainage CellDrainagePlanner::plan(const DrainageRequest& request, const CanOpenCell& can_open,
+                                              const CanOpenWall& can_open_wall) {
+  CellDrainageTask task(*ground_, request, can_open, can_open_wall, monitor_);
   CellDraft draft = begin_draft(task);
   draft = open_where_asked(task, std::move(draft));
   draft = open_and_join(task, std::move(draft));
@@ -37,6 +43,13 @@ PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVo
   result.plan.widest_cup = widest_cup(task, draft);
   describe_holes(result.plan.holes, request, task.places.front().showing());
   return result;
+}
+
+PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVoids& cells,
+                                       const PackingLimits& limits, const DrainageRequest& request,
+                                       const CanOpenCell& can_open, const CanOpenWall& can_open_wall,
+                                       Monitor& monitor) {
+  return CellDrainagePlanner(model, cells, limits, request, monitor).plan(request, can_open, can_open_wall);
 }
 
 }  // namespace aerate

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "core/cells.h"
@@ -44,5 +45,26 @@ PlannedCellDrainage plan_cell_drainage(const DrainableModel& model, const CellVo
                                        const PackingLimits& limits, const DrainageRequest& request,
                                        const CanOpenCell& can_open, const CanOpenWall& can_open_wall,
                                        Monitor& monitor);
+
+struct CellDrainageGround;
+
+// The same for several plans of the same cells, of which the first that ask for something find it out for all.
+class CellDrainagePlanner {
+ public:
+  // All that is given has to outlive this.
+  CellDrainagePlanner(const DrainableModel& model, const CellVoids& cells, const PackingLimits& limits,
+                      const DrainageRequest& request, Monitor& monitor);
+  ~CellDrainagePlanner();
+  CellDrainagePlanner(const CellDrainagePlanner&) = delete;
+  CellDrainagePlanner& operator=(const CellDrainagePlanner&) = delete;
+
+  // For a request with the same tubes and sides as the planner's. Throws what plan_cell_drainage throws.
+  PlannedCellDrainage plan(const DrainageRequest& request, const CanOpenCell& can_open,
+                           const CanOpenWall& can_open_wall);
+
+ private:
+  std::unique_ptr<CellDrainageGround> ground_;
+  Monitor& monitor_;
+};
 
 }  // namespace aerate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <tbb/parallel_for.h>
@@ -49,21 +50,37 @@ std::vector<VoidHollows> hollows_of(const CellVoids& cells, Vec3d up, Monitor& m
 
 }  // namespace
 
-CellDrainageTask::CellDrainageTask(const DrainableModel& model, const CellVoids& voids,
-                                   const PackingLimits& kept, const DrainageRequest& asked,
-                                   const CanOpenCell& can_cut, Monitor& watched)
-    : cells(voids),
+CellDrainageGround::CellDrainageGround(const DrainableModel& drained, const CellVoids& voids,
+                                       const PackingLimits& kept, const DrainageRequest& request,
+                                       Monitor& monitor)
+    : model(drained),
+      cells(voids),
       limits(kept),
+      hollows(hollows_of(voids, kept.roof.up, monitor)),
+      pools(hollows),
+      surfaces(model.surface, voids, kept, 2 * longest_hole(request, kept), model.kept),
+      windows(find_cell_windows(voids, hollows, kept, request.channel_radius, surfaces, monitor)) {
+  for (const double radius : {request.hole_radius, request.narrow_hole_radius})
+    if (radius > 0) ways.emplace_back(model, voids, hollows, kept, radius, surfaces);
+  for (const VoidHollows& one : hollows) volume += one.volume();
+}
+
+CellDrainageTask::CellDrainageTask(CellDrainageGround& ground, const DrainageRequest& asked,
+                                   const CanOpenCell& can_cut, const CanOpenWall& can_cut_wall,
+                                   Monitor& watched)
+    : cells(ground.cells),
+      limits(ground.limits),
       request(asked),
       can_open(can_cut),
       monitor(watched),
-      hollows(hollows_of(voids, kept.roof.up, watched)),
-      pools(hollows),
-      surfaces(model.surface, voids, kept, 2 * longest_hole(asked, kept), model.kept),
-      windows(find_cell_windows(voids, hollows, kept, asked.channel_radius, surfaces, watched)) {
-  for (const double radius : {asked.hole_radius, asked.narrow_hole_radius})
-    if (radius > 0) places.emplace_back(model, voids, hollows, kept, asked, radius, surfaces);
-  for (const VoidHollows& one : hollows) volume += one.volume();
+      hollows(ground.hollows),
+      volume(ground.volume),
+      pools(ground.pools),
+      surfaces(ground.surfaces) {
+  std::ranges::copy_if(ground.windows, std::back_inserter(windows),
+                       [&](const CellWindow& window) { return can_cut_wall(window.channel.tube); });
+  for (CellHoleWays& ways : ground.ways)
+    places.emplace_back(ground.model, cells, hollows, limits, asked, surfaces, ways);
 }
 
 double volume_of(const CellDrainageTask& task, const CellMembers& members) {

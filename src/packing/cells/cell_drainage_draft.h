@@ -16,26 +16,43 @@
 
 namespace aerate {
 
-// What is asked for, and what can be looked up: the same for all drafts.
-struct CellDrainageTask {
-  CellDrainageTask(const DrainableModel& model, const CellVoids& voids, const PackingLimits& kept,
-                   const DrainageRequest& asked, const CanOpenCell& can_cut, Monitor& watched);
-  CellDrainageTask(const CellDrainageTask&) = delete;
-  CellDrainageTask& operator=(const CellDrainageTask&) = delete;
+// What can be looked up: the same for all plans of these cells.
+struct CellDrainageGround {
+  CellDrainageGround(const DrainableModel& drained, const CellVoids& voids, const PackingLimits& kept,
+                     const DrainageRequest& request, Monitor& monitor);
+  CellDrainageGround(const CellDrainageGround&) = delete;
+  CellDrainageGround& operator=(const CellDrainageGround&) = delete;
 
+  const DrainableModel& model;
   const CellVoids& cells;
   PackingLimits limits;
-  const DrainageRequest& request;
-  const CanOpenCell& can_open;
-  Monitor& monitor;
   std::vector<VoidHollows> hollows;  // by void
   double volume = 0;                 // of all voids, mm3
   CellPools pools;
   CellSurfaces surfaces;
   std::vector<CellWindow> windows;  // all places for windows
-  std::vector<CellHolePlaces>
-      places;                     // for holes of the usual width, then for narrower ones if there are any
-  std::vector<EscapeHole> uncut;  // that could not be cut: nothing is tried again as near as a radius
+  std::vector<CellHoleWays> ways;   // for holes of the usual width, then for narrower ones if there are any
+};
+
+// What is asked for as well: the same for all drafts.
+struct CellDrainageTask {
+  CellDrainageTask(CellDrainageGround& ground, const DrainageRequest& asked, const CanOpenCell& can_cut,
+                   const CanOpenWall& can_cut_wall, Monitor& watched);
+  CellDrainageTask(const CellDrainageTask&) = delete;
+  CellDrainageTask& operator=(const CellDrainageTask&) = delete;
+
+  const CellVoids& cells;
+  const PackingLimits& limits;
+  const DrainageRequest& request;
+  const CanOpenCell& can_open;
+  Monitor& monitor;
+  const std::vector<VoidHollows>& hollows;
+  double volume;
+  const CellPools& pools;
+  const CellSurfaces& surfaces;
+  std::vector<CellWindow> windows;     // those that may be opened
+  std::vector<CellHolePlaces> places;  // as the ways of the ground
+  std::vector<EscapeHole> uncut;       // that could not be cut: nothing is tried again as near as a radius
 
   std::size_t void_count() const { return hollows.size(); }
 };

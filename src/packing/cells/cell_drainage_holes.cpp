@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <queue>
 #include <tbb/parallel_for.h>
@@ -34,19 +35,14 @@ std::vector<Vec3d> directions_and_level_ones(Vec3d axis) {
 
 }  // namespace
 
-CellHolePlaces::CellHolePlaces(const DrainableModel& model, const CellVoids& cells,
-                               const std::vector<VoidHollows>& hollows, const PackingLimits& limits,
-                               const DrainageRequest& request, double radius, const CellSurfaces& surfaces)
+CellHoleWays::CellHoleWays(const DrainableModel& model, const CellVoids& cells,
+                           const std::vector<VoidHollows>& hollows, const PackingLimits& limits,
+                           double radius, const CellSurfaces& surfaces)
     : cells_(cells),
       hollows_(hollows),
-      limits_(limits),
-      surfaces_(surfaces),
-      outward_(model.outward),
-      ways_out_(hollows, limits, radius, surfaces, model.outward),
-      showing_(surfaces.model(), limits.roof.up, model.plate, request),
-      worth_of_hiding_(request.worth_of_hiding) {
-  const Vec3d up = limits.roof.up;
-  directions_ = {directions_and_level_ones(-up), directions_and_level_ones(up)};
+      up_(limits.roof.up),
+      tubes_(hollows, limits, radius, surfaces, model.outward),
+      directions_{directions_and_level_ones(-up_), directions_and_level_ones(up_)} {
   // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
   if (limits.roof.limits_ceilings()) {
     std::vector<Vec3d>& high = directions_[kUpsideDown];
@@ -54,23 +50,51 @@ CellHolePlaces::CellHolePlaces(const DrainableModel& model, const CellVoids& cel
   }
 }
 
+CellHoleWays::Known CellHoleWays::known(const Start& start) {
+  const auto [known, is_new] = known_.try_emplace(start);
+  return {&known->second, is_new};
+}
+
 // From just above a node on the floor of a hollow, or from so high above it that a tube down has room.
-CellHolePlaces::Ways CellHolePlaces::ways_from(std::uint32_t from, std::uint32_t node,
-                                               std::size_t orientation) const {
-  const Vec3d up = orientation == kUpright ? limits_.roof.up : -limits_.roof.up;
-  const Vec3d at = hollows_[from].nodes().at(node);
-  const double ball = cells_.ball_radius, radius = ways_out_.radius();
+CellHoleWays::Ways CellHoleWays::look_from(const Start& start) const {
+  const Vec3d up = start.orientation == kUpright ? up_ : -up_;
+  const Vec3d at = hollows_[start.from].nodes().at(start.node);
+  const double ball = cells_.ball_radius, radius = tubes_.radius();
   Ways ways;
-  for (const Vec3d direction : directions_[orientation]) {
+  for (const Vec3d direction : directions_[start.orientation]) {
     const double lowered = radius * lean_of(direction, up);
     const bool leads_down = dot(direction, up) < -0.5;
     for (const double above : {0.2 * ball + 0.1, std::max(ball, radius) + 0.1}) {
-      const auto way = ways_out_.follow(from, at + up * (lowered + above), direction);
-      if (way && showing_.is_allowed(way->hole.tube)) ways.push_back(*way);
+      const auto way = tubes_.follow(start.from, at + up * (lowered + above), direction);
+      if (way) ways.push_back(*way);
       if (way || !leads_down) break;
     }
   }
   return ways;
+}
+
+CellHolePlaces::CellHolePlaces(const DrainableModel& model, const CellVoids& cells,
+                               const std::vector<VoidHollows>& hollows, const PackingLimits& limits,
+                               const DrainageRequest& request, const CellSurfaces& surfaces,
+                               CellHoleWays& ways)
+    : cells_(cells),
+      hollows_(hollows),
+      limits_(limits),
+      surfaces_(surfaces),
+      outward_(model.outward),
+      ways_(ways),
+      ways_out_(ways.tubes()),
+      showing_(surfaces.model(), limits.roof.up, model.plate, request),
+      avoids_plate_(request.avoids_plate),
+      worth_of_hiding_(request.worth_of_hiding) {}
+
+bool CellHolePlaces::is_allowed(CellWayOut& way) const {
+  if (avoids_plate_) {
+    if (!way.reaches_plate) way.reaches_plate = showing_.reaches_plate(way.hole.tube);
+    if (*way.reaches_plate) return false;
+  }
+  if (!way.is_on_sides) way.is_on_sides = showing_.is_on_sides(way.hole.tube);
+  return *way.is_on_sides;
 }
 
 // The best way first. What those from a node cost at least is known before they are looked for.
@@ -92,7 +116,7 @@ class CellHolePlaces::Ranking {
   }
 
   // How much a way shows is only looked at where it may be the best.
-  const CellWayOut* next() {
+  CellWayOut* next() {
     while (!queue_.empty()) {
       const Entry best = queue_.top();
       if (best.way == nullptr) {
@@ -125,18 +149,26 @@ class CellHolePlaces::Ranking {
       nodes.push_back(queue_.top());
       queue_.pop();
     }
-    std::vector<std::pair<Ways*, const Entry*>> unknown;
+    // Nodes of several hollows may be the same.
+    std::map<Ways*, std::optional<CellHoleWays::Start>> looked_at;  // those that are still to be looked for
+    std::vector<Ways*> ways_of;
     for (const Entry& entry : nodes) {
-      const auto [known, is_new] = places_.known_.try_emplace({orientation_, entry.from, entry.node});
-      if (is_new) unknown.emplace_back(&known->second, &entry);
+      const CellHoleWays::Start start{orientation_, entry.from, entry.node};
+      const auto [ways, is_new] = places_.ways_.known(start);
+      ways_of.push_back(ways);
+      looked_at.try_emplace(ways, is_new ? std::optional(start) : std::nullopt);
     }
-    tbb::parallel_for(std::size_t{0}, unknown.size(), [&](std::size_t i) {
-      const Entry& entry = *unknown[i].second;
-      *unknown[i].first = places_.ways_from(entry.from, entry.node, orientation_);
+    const std::vector<std::pair<Ways*, std::optional<CellHoleWays::Start>>> each(looked_at.begin(),
+                                                                                 looked_at.end());
+    tbb::parallel_for(std::size_t{0}, each.size(), [&](std::size_t i) {
+      const auto& [ways, start] = each[i];
+      if (start) *ways = places_.ways_.look_from(*start);
+      for (CellWayOut& way : *ways) places_.is_allowed(way);
     });
-    for (const Entry& entry : nodes) {
-      for (CellWayOut& way : places_.known_[{orientation_, entry.from, entry.node}])
-        queue_.push({cost_of(way), sequence_++, entry.from, entry.node, &way});
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      for (CellWayOut& way : *ways_of[i])
+        if (places_.is_allowed(way))
+          queue_.push({cost_of(way), sequence_++, nodes[i].from, nodes[i].node, &way});
     }
   }
 
@@ -168,10 +200,11 @@ std::optional<CellHole> CellHolePlaces::best(std::span<const Basin::Part> hollow
     if (own.bottom[part.hollow] > lowest + share * height) continue;
     for (const std::uint32_t node : own.floor[part.hollow]) ranking.push(part.in, node);
   }
-  while (const CellWayOut* way = ranking.next()) {
-    if (!ways_out_.is_sound(*way)) continue;
-    CellHole hole = ways_out_.hole_of(*way);
-    if (accept(hole)) return hole;
+  while (CellWayOut* way = ranking.next()) {
+    if (!way->is_sound) way->is_sound = ways_out_.is_sound(*way);
+    if (!*way->is_sound) continue;
+    if (!way->made) way->made = std::make_shared<const CellHole>(ways_out_.hole_of(*way));
+    if (accept(*way->made)) return *way->made;
   }
   return std::nullopt;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "kernels/constants.h"
 #include "packing/hole_rules.h"
@@ -28,34 +29,36 @@ WaysOut::WaysOut(const std::vector<VoidHollows>& hollows, const PackingLimits& l
       surfaces_(surfaces),
       outward_(outward) {}
 
-// False if part of the tube's side does not begin in the void, or leaves it too obliquely.
+// False if part of the tube's side does not begin in the void, leaves it too obliquely, or leaves the tube too long or too
+// short.
 bool WaysOut::leave_void(const Tube& tube, CellWayOut& way) const {
   const Vec3d axis = direction_of(tube), up = limits_.roof.up;
-  std::vector<Vec3d> starts = lines_round(tube.start, tube, up);
-  starts.push_back(tube.start);
+  // The axis first: where it fails, as most do, no line of the side is looked at.
+  std::vector<Vec3d> starts{tube.start};
+  starts.reserve(1 + kTubeSides);
+  std::ranges::copy(lines_round(tube.start, tube, up), std::back_inserter(starts));
   way.first = way.lowest = kInfinity;
   way.last = way.highest = -kInfinity;
   for (const Vec3d start : starts) {
-    const auto hit = surfaces_.voids().first_hit(start, axis, 2 * longest_);
-    if (!hit) return false;
-    const Vec3d at = start + axis * *hit;
-    if (dot(surfaces_.voids().normal_near(at), axis) > -kLeastSlope) return false;
-    way.first = std::min(way.first, *hit);
-    way.last = std::max(way.last, *hit);
+    const auto hit = surfaces_.voids().first_hit_with_normal(start, axis, 2 * longest_);
+    if (!hit || dot(hit->normal, axis) > -kLeastSlope) return false;
+    const Vec3d at = start + axis * hit->along;
+    way.first = std::min(way.first, hit->along);
+    way.last = std::max(way.last, hit->along);
     way.lowest = std::min(way.lowest, dot(at, up));
     way.highest = std::max(way.highest, dot(at, up));
+    if (way.last + kClearance > way.reached || way.length() > longest_) return false;
   }
   return true;
 }
 
 std::optional<CellWayOut> WaysOut::follow(std::uint32_t from, Vec3d inside, Vec3d direction) const {
-  const auto reached = surfaces_.model().first_hit(inside, direction, 2 * longest_);
-  if (!reached) return std::nullopt;
-  CellWayOut way{.hole = {from, {inside, inside + direction * *reached, radius_}, 0}, .reached = *reached};
+  const auto reached = surfaces_.model().first_hit_with_normal(inside, direction, 2 * longest_);
+  if (!reached || dot(reached->normal, direction) < kLeastSlope) return std::nullopt;
+  CellWayOut way{.hole = {from, {inside, inside + direction * reached->along, radius_}, 0},
+                 .reached = reached->along};
   Tube& tube = way.hole.tube;
-  if (dot(surfaces_.model().normal_near(tube.end), direction) < kLeastSlope) return std::nullopt;
-  if (!leave_void(tube, way) || way.last + kClearance > way.reached || way.length() > longest_)
-    return std::nullopt;
+  if (!leave_void(tube, way)) return std::nullopt;
   const double skipped = std::max(0.0, way.first - kClearance);
   tube.start = inside + direction * skipped;
   way.first -= skipped;
@@ -70,13 +73,13 @@ bool WaysOut::is_sound(const CellWayOut& way) const {
   if (!leads_outside(tube, limits_.wall, surfaces_.model(), outward_)) return false;
   double first_out = kInfinity;
   for (const Vec3d start : lines_round(tube.start, tube, limits_.roof.up)) {
-    const auto out = surfaces_.model().first_hit(start, axis, 2 * longest_);
-    if (!out || dot(surfaces_.model().normal_near(start + axis * *out), axis) < kLeastSlope) return false;
-    first_out = std::min(first_out, *out);
+    const auto out = surfaces_.model().first_hit_with_normal(start, axis, 2 * longest_);
+    if (!out || dot(out->normal, axis) < kLeastSlope) return false;
+    first_out = std::min(first_out, out->along);
     // No void again beyond where it left its own.
     const auto left = surfaces_.voids().first_hit(start, axis, 2 * longest_);
     const Vec3d beyond = start + axis * (left.value_or(0) + 1e-4);
-    if (!left || surfaces_.voids().is_hit(beyond, axis, std::max(0.0, *out - *left))) return false;
+    if (!left || surfaces_.voids().is_hit(beyond, axis, std::max(0.0, out->along - *left))) return false;
   }
   if (first_out < way.last + kClearance) return false;
   const Tube outside{tube.start + axis * way.first, tube.end, radius_};

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,8 +27,13 @@ struct CellWayOut {
   // Where the tube's side leaves the void: first and last along the axis from its start, mm; lowest and
   // highest along print orientation's up.
   double first = 0, last = 0, lowest = 0, highest = 0;
-  double reached = 0;                            // where along the axis that meets the surface
-  std::optional<double> showing = std::nullopt;  // to 1; once it was looked at
+  double reached = 0;  // where along the axis that meets the surface
+
+  // Once it was looked at: how much it shows, to 1; whether it is closed by the plate, comes out on the sides that were asked
+  // for, and is sound (see WaysOut); the hole.
+  std::optional<double> showing = std::nullopt;
+  std::optional<bool> reaches_plate = std::nullopt, is_on_sides = std::nullopt, is_sound = std::nullopt;
+  std::shared_ptr<const CellHole> made = nullptr;
 
   double length() const { return reached - first; }
 };
