@@ -266,6 +266,28 @@ Json json_of(const DrainageFindings& findings) {
   return json;
 }
 
+Json json_of(const OverhangFindings& findings) {
+  Json json{{"verdict", findings.verdict},
+            {"process", findings.inquiry.process.name},
+            {"up", findings.inquiry.direction.name}};
+  if (!findings.rules) return json;
+  json["overhang_degrees"] = findings.rules->degrees;
+  json["reach_mm"] = findings.rules->reach;
+  json["reach_source"] = findings.rules->reach_source;
+  if (!findings.overhangs) return json;
+  json["spacing_mm"] = findings.overhangs->spacing;
+  json["area_mm2"] = findings.overhangs->area();
+  json["regions"] = Json::array();
+  for (const OverhangRegion& region : findings.overhangs->regions)
+    json["regions"].push_back({{"area_mm2", region.area},
+                               {"place_mm", json_of(region.place)},
+                               {"height_mm", region.height},
+                               {"width_mm", region.width},
+                               {"begins_in_air", !region.farthest},
+                               {"farthest_mm", or_null(region.farthest)}});
+  return json;
+}
+
 Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured, Build build) {
   Json holes = Json::array();
   for (const EscapeHole& hole : drainage.plan.holes) {
@@ -510,6 +532,7 @@ std::string to_json(const InspectReport& report) {
   json["shells"] = shells;
   json["use"] = report.use;
   json["drainage"] = report.drainage ? json_of(*report.drainage) : Json(nullptr);
+  json["overhangs"] = report.overhangs ? json_of(*report.overhangs) : Json(nullptr);
   if (report.self_intersections) {
     Json places = Json::array();
     for (const Vec3d place : report.self_intersections->places) places.push_back(json_of(place));

@@ -455,6 +455,20 @@ void add_findings(Lines& lines, const DrainageFindings& findings) {
               air.found.wall->thickness, point(air.found.wall->place));
 }
 
+void add_overhangs(Lines& lines, const OverhangFindings& findings) {
+  lines.add("overhangs", "{}", findings.verdict);
+  if (!findings.overhangs) return;
+  lines.add("", "for {}, up is {} ({}): beyond {:g} degrees, and {:g} mm from what holds it; {}",
+            findings.inquiry.process.name, findings.inquiry.direction.name, findings.inquiry.direction.origin,
+            findings.rules->degrees, findings.rules->reach, findings.rules->reach_source);
+  add_some(lines, findings.overhangs->regions, [&](const OverhangRegion& region, bool) {
+    const std::string how = region.farthest ? fmt::format("{:.1f} mm from what holds it", *region.farthest)
+                                            : std::string("begins in the air");
+    lines.add("", "{:.1f} mm2, {:.1f} mm wide, near {} mm, {:.1f} mm up: {}", region.area, region.width,
+              point(region.place), region.height, how);
+  });
+}
+
 }  // namespace
 
 std::string to_text(const HollowReport& report) {
@@ -570,6 +584,7 @@ std::string to_text(const InspectReport& report) {
     for (const Vec3d place : report.self_intersections->places) lines.add("", "near {} mm", point(place));
   }
   if (report.drainage) add_findings(lines, *report.drainage);
+  if (report.overhangs) add_overhangs(lines, *report.overhangs);
   lines.add("use", "{}", report.use);
   add_stages(lines, report.stages);
   return lines.take();
