@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -540,6 +541,45 @@ std::string to_json(const InspectReport& report) {
   } else {
     json["self_intersections"] = nullptr;
   }
+  add_closing(json, report.stages, report.notices);
+  return dump(json);
+}
+
+std::string to_json(const SupportReport& report) {
+  const SupportFacts& facts = report.facts;
+  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json json = report_header("support");
+  json["input"] = json_of(report.input);
+  json["process"] = report.process.name;
+  json["up"] = report.direction.name;
+  json["limits"] = {
+      {"overhang_degrees", report.rules.degrees},    {"reach_mm", report.rules.reach},
+      {"reach_source", report.rules.reach_source},   {"layer_mm", report.rules.layer},
+      {"clearance_mm", report.shape.body.clearance}, {"contact_gap_mm", report.shape.tooth.gap}};
+  json["overhangs"] = {{"count", report.overhangs.regions.size()}, {"area_mm2", report.overhangs.area()}};
+  json["body"] = {{"volume_mm3", report.body_volume},
+                  {"fill", report.foam.empty() ? Json("plain") : Json(report.foam)},
+                  {"volume_after_mm3", facts.volume},
+                  {"distance_mm", finite(facts.body_distance)},
+                  {"footing_margin_mm", or_null(facts.footing_margin)}};
+  json["teeth"] = {{"kind", report.shape.kind == ToothKind::ridge ? "ridges" : "cones"},
+                   {"count", report.tooth_count},
+                   {"on_model", report.foot_count},
+                   {"width_mm", report.shape.tooth.width},
+                   {"distance_mm", finite(facts.tooth_distance)},
+                   {"tip_area_mm2", report.tip_area},
+                   {"strength_mpa", report.strength},
+                   {"force_estimate_n", report.force()}};
+  json["contact"] = {{"area_mm2", facts.contact_area},
+                     {"farthest_mm", finite(facts.farthest)},
+                     {"unsupported_mm2", facts.unsupported_area}};
+  Json settings = Json::object();
+  for (const PartSetting& setting : report.part_settings) settings[setting.key] = setting.value;
+  json["parts"] = report.parts_for == nullptr
+                      ? Json(nullptr)
+                      : Json{{"flavor", report.parts_for->modifiers->flavor}, {"settings", settings}};
+  json["output"] = {
+      {"path", report.output.string()}, {"bytes", report.output_bytes}, {"triangles", facts.triangle_count}};
   add_closing(json, report.stages, report.notices);
   return dump(json);
 }

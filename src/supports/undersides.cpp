@@ -23,6 +23,9 @@ constexpr double kColumnsPerReach = 5;
 constexpr double kLeastSpacing = 0.25, kMostSpacing = 0.45;
 constexpr double kMostColumns = 2e6;
 
+// What is so near to the plate or to the model below has no room for supports: it is printed onto that.
+constexpr double kLeastLayers = 2;
+
 // A step down from one column to the next is level up to this slope.
 constexpr double kLevelSlope = 0.2;
 
@@ -96,6 +99,14 @@ std::vector<bool> reached_from_outside(const Undersides& columns) {
   return is_reached;
 }
 
+// Whether one piece of solid reaches from one height of a column to another.
+bool is_filled(const Undersides& columns, std::size_t column, double lower, double upper) {
+  for (std::uint32_t i = columns.first[column]; i + 1 < columns.first[column + 1]; ++i) {
+    if (columns.spans[i].ceiling <= lower && columns.spans[i + 1].floor >= upper) return true;
+  }
+  return false;
+}
+
 void find_holds(Undersides& columns, const SupportRules& rules) {
   const double degrees = std::min(rules.degrees + kCeilingMarginDegrees, 89.0);
   const double fall = columns.spacing / std::tan(degrees * std::numbers::pi / 180);
@@ -107,10 +118,12 @@ void find_holds(Undersides& columns, const SupportRules& rules) {
     if (!std::isfinite(z) || !is_outside[i]) return;
     columns.hold[i] = Hold::bridge;
     // The layers between it and the plate are too few to tell them apart.
-    if (z <= columns.plate + 1.5 * rules.layer) columns.hold[i] = Hold::angle;
+    const double below = std::max(columns.plate, columns.spans[span].floor);
+    if (z <= below + kLeastLayers * rules.layer) columns.hold[i] = Hold::angle;
     for (const Step& step : kSteps) {
       const std::size_t other = column_at(columns, span, step.dx, step.dy);
-      if (is_a_column(columns, other) && columns.is_solid(other, z - step.length * fall))
+      const double lower = step.length * fall;
+      if (is_a_column(columns, other) && is_filled(columns, other, z - lower, z - 0.5 * lower))
         columns.hold[i] = Hold::angle;
     }
   });
@@ -126,13 +139,18 @@ void find_tips(Undersides& columns, const SupportRules& rules) {
   std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) {
     return columns.spans[a].ceiling < columns.spans[b].ceiling;
   });
-  const double grounded = columns.plate + 1.5 * rules.layer;
+  const double grounded = columns.plate + kLeastLayers * rules.layer;
   const double least_rise = std::max(rules.layer, kLevelSlope * columns.spacing);
   DisjointSets sets(columns.spans.size());
   std::vector<std::uint32_t> lowest(columns.spans.size(), kNoSpan);  // by root
   for (const std::uint32_t span : order) {
     const double z = columns.spans[span].ceiling;
     lowest[span] = span;
+    if (columns.spans[span].floor >= z - kLeastLayers * rules.layer) {
+      const std::uint32_t low = lowest[sets.root(span - 1)];
+      sets.join(span, span - 1);
+      lowest[sets.root(span)] = low;
+    }
     for (const Step& step : kSteps) {
       const std::size_t other = column_at(columns, span, step.dx, step.dy);
       if (!is_a_column(columns, other)) continue;

@@ -98,6 +98,15 @@ TEST(Overhangs, ASteepTipThatBeginsInTheAirIsFound) {
   EXPECT_EQ(in_air, 1U);
 }
 
+TEST(Overhangs, AFloorBelowHoldsNothing) {
+  // A slot of 0.5 mm, less than a column is wide.
+  Mesh mesh = join(make_box({0, 0, 0}, {30, 20, 10}), make_box({0, 0, 10}, {8, 20, 10.5F}));
+  mesh = join(mesh, make_box({0, 0, 10.5F}, {30, 20, 16}));
+  const Overhangs overhangs = found(mesh);
+  ASSERT_EQ(overhangs.regions.size(), 1U);
+  EXPECT_NEAR(*overhangs.regions.front().farthest, 22, 0.6);
+}
+
 TEST(Overhangs, CeilingsOfSealedCavitiesStayOut) {
   Mesh cavity = make_box({5, 5, 5}, {25, 25, 25});
   for (Triangle& t : cavity.triangles) std::swap(t[1], t[2]);
