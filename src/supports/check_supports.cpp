@@ -48,6 +48,14 @@ void require_sound(const Mesh& mesh, bool has_voids) {
   if (inward > 0 && !has_voids) fail_check("{} of its shells face inward", inward);
 }
 
+void require_above_plate(const Mesh& mesh, double plate) {
+  constexpr double kRounding = 1e-3;
+  for (const Vec3f& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !(static_cast<double>(p.z) >= plate - kRounding))
+      fail_check("it reaches below the plate, to ({:.2f}, {:.2f}, {:.2f}) mm", p.x, p.y, p.z);
+  }
+}
+
 void require_outside(const Mesh& mesh, std::span<const Triangle> triangles, const kernels::WindingView& model,
                      const char* what) {
   for (const Triangle& t : triangles) {
@@ -145,6 +153,7 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
                             const Undersides& columns, const SupportRules& rules, const SupportShape& shape,
                             bool has_voids, Monitor& monitor) {
   require_sound(written, has_voids);
+  require_above_plate(written, columns.plate);
   monitor.check_interrupted();
   SupportFacts facts;
   facts.triangle_count = written.triangles.size();

@@ -95,17 +95,19 @@ class BelowModel {
 
 class OnModel {
  public:
-  OnModel(const kernels::WindingView& model, const ToothShape& shape) : model_(model), shape_(shape) {}
+  OnModel(const kernels::WindingView& model, double plate, const ToothShape& shape)
+      : model_(model), plate_(plate), shape_(shape) {}
 
   Extent extent(double x, double y, double ceiling, double /*nearest*/) const {
     double floor = -kInfinity;
     for (const AirSpan& span : air_spans_at(model_, x, y))
       if (span.floor < ceiling) floor = std::max(floor, span.floor);
-    return {floor + shape_.off(), ceiling + shape_.embedded};
+    return {std::max(plate_, floor + shape_.off()), ceiling + shape_.embedded};
   }
 
  private:
   const kernels::WindingView& model_;
+  double plate_;
   const ToothShape& shape_;
 };
 
@@ -316,7 +318,7 @@ ToothSurfaces teeth_below(const SurfaceIndex& model, const kernels::WindingView*
 
 ToothSurfaces teeth_on_model(const SurfaceIndex& model, const Undersides& columns, const TeethPlan& plan,
                              const ToothShape& shape) {
-  return teeth_of(model, columns, plan, OnModel(model.winding(), shape), shape, false);
+  return teeth_of(model, columns, plan, OnModel(model.winding(), columns.plate, shape), shape, false);
 }
 
 }  // namespace aerate

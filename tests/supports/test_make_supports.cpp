@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "core/facet_distance.h"
 #include "core/monitor.h"
 #include "core/surface_index.h"
+#include "files/load.h"
 #include "mesh/inspect.h"
 #include "supports/check_supports.h"
 #include "supports/make_supports.h"
@@ -128,6 +130,21 @@ TEST(MakeSupports, APointThatBeginsInTheAirGetsATooth) {
   EXPECT_TRUE(is_there);
 }
 
+TEST(MakeSupports, TheBunnyUpsideDownStandsOnThePlate) {
+  // Feet of its body reach past the model.
+  Monitor monitor;
+  Mesh bunny = load_model(std::filesystem::path(AERATE_SAMPLES) / "bunny.stl").mesh;
+  Mesh turned = bunny;
+  for (Vec3f& p : turned.positions) p = {p.x, -p.y, -p.z};
+  const float low = bounding_box(turned).lower.z;
+  for (Vec3f& p : turned.positions) p.z -= low;
+  Supported made(turned);
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_LT(facts.unsupported_area, 2);
+  EXPECT_GE(bounding_box(made.mesh()).lower.z, -1e-4F);
+}
+
 TEST(MakeSupports, NothingToDoIsSaid) {
   Supported made(make_box({0, 0, 0}, {20, 20, 20}));
   EXPECT_TRUE(contains(message_of<NothingToRemoveError>([&] { made.make(); }), "nothing needs supports"));
@@ -162,6 +179,12 @@ TEST_F(CheckSupports, RefuseTurnedOnes) {
   Mesh turned = made.mesh();
   for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
   EXPECT_TRUE(contains(refusal(turned), "face inward"));
+}
+
+TEST_F(CheckSupports, RefuseOnesBelowThePlate) {
+  Mesh low = made.mesh();
+  for (Vec3f& p : low.positions) p.z -= 1;
+  EXPECT_TRUE(contains(refusal(low), "below the plate"));
 }
 
 TEST_F(CheckSupports, RefuseABodyThatIsTooNear) {
