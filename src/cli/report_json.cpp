@@ -561,7 +561,8 @@ std::string to_json(const SupportReport& report) {
                   {"fill", report.foam.empty() ? Json("plain") : Json(report.foam)},
                   {"volume_after_mm3", facts.volume},
                   {"distance_mm", finite(facts.body_distance)},
-                  {"footing_margin_mm", or_null(facts.footing_margin)}};
+                  {"footing_margin_mm", or_null(facts.footing_margin)},
+                  {"unsupported_mm2", or_null(facts.own_unsupported_area)}};
   json["teeth"] = {{"kind", report.shape.kind == ToothKind::ridge ? "ridges" : "cones"},
                    {"count", report.tooth_count},
                    {"on_model", report.foot_count},

@@ -99,6 +99,20 @@ constexpr double kMostLeft = 2;  // mm2
       "give a smaller --contact-gap, print it another way --up, or let the slicer make supports there");
 }
 
+// Drawn in less where bodies would tip over.
+Supports make_standing(const SurfaceIndex& model, const Undersides& undersides, const SupportRules& rules,
+                       SupportShape& shape, Monitor& monitor) {
+  constexpr int kTries = 4;
+  Supports supports = make_supports(model, undersides, rules, shape, monitor);
+  for (int i = 1; i < kTries && shape.tooth.gap > 0; ++i) {
+    const auto margin = least_footing_margin(supports.body, supports.body.triangles, undersides.plate);
+    if (!margin || *margin >= 0) break;
+    shape.body.foot *= 2;
+    supports = make_supports(model, undersides, rules, shape, monitor);
+  }
+  return supports;
+}
+
 }  // namespace
 
 SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
@@ -132,7 +146,7 @@ SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
   log.check_interrupted();
 
   log.stage("supports");
-  Supports supports = make_supports(index, undersides, rules, report.shape, log);
+  Supports supports = make_standing(index, undersides, rules, report.shape, log);
   Mesh body = std::move(supports.body);
   report.body_volume = signed_volume(body);
   if (options.foam && !body.triangles.empty()) {

@@ -116,6 +116,11 @@ Pixels taken_by_model(const Undersides& columns, const Pixels& empty, double z, 
   const double pixels = clearance / columns.spacing;
   const std::vector<float> near = solid.squared_distances(true, static_cast<int>(pixels) + 1);
   for (std::size_t i = 0; i < solid.size(); ++i) solid[i] = near[i] <= squared(pixels) ? 1 : 0;
+  // What is as near above or below, but for what the level set cuts.
+  const double level = clearance - columns.spacing;
+  for (std::size_t i = 0; level > 0 && i < solid.size(); ++i) {
+    if (columns.is_solid(i, z - level) || columns.is_solid(i, z + level)) solid[i] = 1;
+  }
   return solid;
 }
 

@@ -23,6 +23,8 @@ namespace {
 
 // Columns are told apart to half of one on each side.
 constexpr double kColumnsOff = 1.5;
+// What of supports' own underside may be held by nothing: corners that smoothing leaves, mm2.
+constexpr double kMostOwn = 10;
 // What voxels show of the clearance at features thinner than they.
 constexpr double kLeastClearance = 0.5;
 
@@ -76,7 +78,8 @@ double ceiling_near(const kernels::WindingView& model, double x, double y, doubl
   return best;
 }
 
-// Of the bodies that stand on the plate.
+}  // namespace
+
 std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body, double plate) {
   const Mesh alone = submesh(mesh, body);
   const EdgeUses uses(alone);
@@ -94,8 +97,6 @@ std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Tri
   }
   return least;
 }
-
-}  // namespace
 
 void measure_contact(const kernels::WindingView& solid, const kernels::WindingView& model,
                      const Undersides& columns, double within, double reach, SupportFacts& facts) {
@@ -168,7 +169,8 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
       fail_check("the body is {:.3g} mm from the model, {:.3g} mm were asked for", facts.body_distance,
                  shape.body.clearance);
     facts.footing_margin = least_footing_margin(written, body, columns.plate);
-    if (facts.footing_margin && *facts.footing_margin < 0)
+    // What is joined to the model and to the plate cannot tip.
+    if (shape.tooth.gap > 0 && facts.footing_margin && *facts.footing_margin < 0)
       fail_check("a body tips over: its centre of mass is {:.2f} mm outside of its foot",
                  -*facts.footing_margin);
   }
@@ -187,6 +189,16 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
   const kernels::HostWinding solid(written.positions, written.triangles);
   measure_contact(solid.view(), model.winding(), columns, shape.tooth.gap + rules.layer / 2, rules.reach,
                   facts);
+  if (has_voids) return facts;
+  const Undersides own = find_undersides(written, solid.view(), rules, columns.plate, columns.spacing);
+  SupportFacts of_own;
+  measure_contact(model.winding(), solid.view(), own, shape.tooth.gap + rules.layer / 2, rules.reach, of_own);
+  facts.own_unsupported_area = of_own.unsupported_area;
+  if (of_own.unsupported_area > kMostOwn) {
+    const Vec3d at = *of_own.farthest_place;
+    fail_check("{:.1f} mm2 of its own underside are held by nothing, near ({:.2f}, {:.2f}, {:.2f}) mm",
+               of_own.unsupported_area, at.x, at.y, at.z);
+  }
   return facts;
 }
 

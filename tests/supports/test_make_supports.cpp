@@ -112,6 +112,14 @@ TEST(MakeSupports, ConesAreJoinedToTheModel) {
   }
 }
 
+TEST(MakeSupports, FineVoxelsKeepTheClearanceAboveAFloor) {
+  Supported made(shelf(), "metal");
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_GT(facts.body_distance, 0.7);
+  EXPECT_EQ(facts.own_unsupported_area.value_or(-1), 0);
+}
+
 TEST(MakeSupports, APointThatBeginsInTheAirGetsATooth) {
   Mesh spike;
   spike.positions = {{20, 5, 5}, {15, 0, 15}, {25, 0, 15}, {25, 10, 15}, {15, 10, 15}};
@@ -206,6 +214,13 @@ TEST_F(CheckSupports, SeeWhatIsNotHeld) {
   EXPECT_GT(facts.unsupported_area, 700);
   EXPECT_EQ(facts.contact_area, 0);
   EXPECT_GT(facts.farthest, 20);
+}
+
+TEST_F(CheckSupports, RefuseABodyThatHangs) {
+  Mesh hanging = made.mesh();
+  for (Vec3f& p : hanging.positions) p.z = std::max(p.z, 20.0F);  // its lower half is gone
+  made.supports.body.positions.clear();
+  EXPECT_TRUE(contains(refusal(hanging), "held by nothing"));
 }
 
 TEST_F(CheckSupports, RefuseABodyThatTipsOver) {
