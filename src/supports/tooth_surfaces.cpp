@@ -246,7 +246,10 @@ void keep_below_rim(const Heights& heights, Vec3d at, double radius, double near
 template <typename Heights>
 Vec3d lowest_near(const Heights& heights, Vec3d at, double spacing, double off) {
   Vec3d lowest = at;
-  for (double step = spacing / 2; step > spacing / 20; step /= 2) {
+  constexpr int kHalvings = 4;
+  double step = spacing;
+  for (int i = 0; i < kHalvings; ++i) {
+    step /= 2;
     const Vec3d middle = lowest;
     for (int dx = -1; dx <= 1; ++dx) {
       for (int dy = -1; dy <= 1; ++dy) {
