@@ -95,7 +95,8 @@ std::vector<OverhangRegion> overhang_regions(const Undersides& columns, const Su
       farthest.push_back(-1);
     }
     OverhangRegion& region = regions[number[root]];
-    const double distance = is_tip[i] ? kInfinity : distances[i];
+    double distance = distances[i];
+    if (is_tip[i]) distance = kInfinity;
     const Vec3d place = columns.place(i);
     const bool is_further = distance > farthest[number[root]];
     if (is_further || (distance == farthest[number[root]] && place.z < region.place.z)) {
