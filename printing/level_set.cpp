@@ -10,6 +10,7 @@
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/ParticlesToLevelSet.h>
 #include <openvdb/tools/SignedFloodFill.h>
+#include <openvdb/tools/TopologyToLevelSet.h>
 #include <openvdb/tools/VolumeToMesh.h>
 #include <openvdb/tree/LeafManager.h>
 #include <thread>
@@ -160,6 +161,31 @@ LevelSet LevelSet::of_balls(std::span<const Sphere> balls, double voxel_size) {
     raster.finalize();
     assert(!raster.ignoredParticles());
   }
+  return LevelSet(std::make_unique<Grid>(Grid{std::move(grid)}));
+}
+
+LevelSet LevelSet::of_voxels(std::span<const std::array<int, 3>> voxels, double voxel_size) {
+  constexpr int kClosing = 0, kDilation = 0, kSmoothing = 2;
+  auto mask = openvdb::MaskGrid::create(false);
+  mask->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
+  auto accessor = mask->getAccessor();
+  for (const auto& [x, y, z] : voxels) accessor.setValueOn({x, y, z});
+  auto grid = openvdb::tools::topologyToLevelSet(*mask, openvdb::LEVEL_SET_HALF_WIDTH, kClosing, kDilation,
+                                                 kSmoothing);
+  return LevelSet(std::make_unique<Grid>(Grid{std::move(grid)}));
+}
+
+LevelSet LevelSet::without(const std::function<double(Vec3d)>& taken) const {
+  auto grid = grid_->values->deepCopy();
+  const double size = grid->voxelSize()[0];
+  openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid->tree());
+  leaves.foreach ([&](Leaf& leaf, std::size_t) {
+    for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
+      const openvdb::Coord at = voxel.getCoord();
+      const auto least = static_cast<float>(taken({at.x() * size, at.y() * size, at.z() * size}));
+      if (least > *voxel) voxel.setValue(least);
+    }
+  });
   return LevelSet(std::make_unique<Grid>(Grid{std::move(grid)}));
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -32,9 +34,16 @@ class LevelSet {
   static LevelSet of_ball(Vec3d centre, double radius, double voxel_size);
   static LevelSet of_balls(std::span<const Sphere> balls, double voxel_size);
 
+  // What voxels fill, given by their coordinates in voxels, with steps smoothed out.
+  static LevelSet of_voxels(std::span<const std::array<int, 3>> voxels, double voxel_size);
+
   ~LevelSet();
   LevelSet(LevelSet&&) noexcept;
   LevelSet& operator=(LevelSet&&) noexcept;
+
+  // This without what is nearer to its surface than three voxels and where `taken` is positive: a distance, mm, as far as that is less
+  // than three voxels. Called from all threads.
+  LevelSet without(const std::function<double(Vec3d)>& taken) const;
 
   // This without what is inside `other`. Precondition: both have the same voxel size.
   LevelSet minus(const LevelSet& other) const;

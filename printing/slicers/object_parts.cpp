@@ -22,6 +22,13 @@ std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent
            pattern}};
 }
 
+std::vector<ObjectPart> support_parts(std::size_t model_triangles, std::size_t support_triangles,
+                                      std::vector<PartSetting> settings) {
+  ObjectPart supports{kSupports, model_triangles, support_triangles, false, ""};
+  supports.settings = std::move(settings);
+  return {{"model", 0, model_triangles, false, ""}, supports};
+}
+
 std::string metadata_of(const pugi::xml_node& node, const char* key) {
   return node.find_child_by_attribute("metadata", "key", key).attribute("value").as_string();
 }

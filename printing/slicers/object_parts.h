@@ -17,6 +17,13 @@ class xml_node;
 // readers.)
 namespace aerate {
 
+// A setting of a part, as a slicer calls it.
+struct PartSetting {
+  std::string key, value;
+
+  bool operator==(const PartSetting&) const = default;
+};
+
 // Consecutive triangles of a mesh that a slicer treats as one part.
 struct ObjectPart {
   std::string name;
@@ -27,6 +34,9 @@ struct ObjectPart {
   std::string pattern = {};     // of a modifier, as slicers call it; empty where it is the print's own
   bool blocks_support = false;  // neither, but where no supports are built
 
+  std::vector<PartSetting> settings =
+      {};  // of supports, which are a body with these, and need no supports themselves
+
   std::size_t end() const { return first_triangle + triangle_count; }
   bool operator==(const ObjectPart&) const = default;
 };
@@ -36,6 +46,13 @@ Mesh with_void_shells_turned(Mesh mesh, const Solid& solid);
 
 // What the part of a file that holds support blockers of voids is called, by which it is known when the file is read.
 inline constexpr const char* kSupportBlockers = "no supports in voids";
+
+// What the part of a file that holds supports is called.
+inline constexpr const char* kSupports = "supports";
+
+// A model and its supports, the triangles of which come after the model's.
+std::vector<ObjectPart> support_parts(std::size_t model_triangles, std::size_t support_triangles,
+                                      std::vector<PartSetting> settings);
 
 // What slicers call the infill that grows up like trees, only where it has something to hold.
 inline constexpr const char* kLightning = "lightning";

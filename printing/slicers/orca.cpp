@@ -78,6 +78,10 @@ std::optional<double> cm3_of_mm3(std::string_view text) {
 // Subtypes of parts.
 constexpr const char* kModifier = "modifier_part";
 constexpr const char* kBlocker = "support_blocker";
+constexpr const char* kBody = "normal_part";
+// Of an object that has supports of its own.
+constexpr const char* kNoOthers =
+    "  <metadata key=\"enable_support\" value=\"0\" />\n  <metadata key=\"thick_bridges\" value=\"0\" />\n";
 
 // A mesh for each part, put together as components.
 constexpr const char* kTemplate = R"(<?xml version="1.0"?>
@@ -92,7 +96,7 @@ constexpr const char* kTemplate = R"(<?xml version="1.0"?>
    <metadata key="name" value="{1}" />
    <metadata key="matrix" value="1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1" />
 {2}  </part>
- </object>
+{5} </object>
 </config>
 )";
 
@@ -110,10 +114,13 @@ std::string file_for(const Mesh& mesh, const ObjectPart& model, const ObjectPart
   extras.component_triangles = {model.triangle_count, voids.triangle_count};
   // One of Bambu Studio's versions would make Orca ask whether it is to be converted, and its command line crash.
   extras.application = "aerate " AERATE_VERSION;
-  const std::string settings =
+  std::string settings =
       setting("sparse_infill_density", voids.infill) + setting("sparse_infill_pattern", voids.pattern);
-  extras.entries = {{kPartList, fmt::format(kTemplate, model.name, voids.name, settings, object,
-                                            voids.blocks_support ? kBlocker : kModifier)}};
+  const bool are_supports = !voids.settings.empty();
+  for (const PartSetting& each : voids.settings) settings += setting(each.key.c_str(), each.value);
+  const char* const kind = are_supports ? kBody : voids.blocks_support ? kBlocker : kModifier;
+  extras.entries = {{kPartList, fmt::format(kTemplate, model.name, voids.name, settings, object, kind,
+                                            are_supports ? kNoOthers : "")}};
   return to_3mf(mesh, extras);
 }
 
@@ -135,6 +142,16 @@ bool is_own_blocker(const pugi::xml_node& part) {
   return is_blocker(part) && metadata_of(part, "name") == kSupportBlockers;
 }
 
+// Of a body; all but its name and place.
+std::vector<PartSetting> settings_of(const pugi::xml_node& part) {
+  std::vector<PartSetting> settings;
+  for (const pugi::xml_node metadata : part.children("metadata")) {
+    PartSetting setting{metadata.attribute("key").as_string(), metadata.attribute("value").as_string()};
+    if (setting.key != "name" && setting.key != "matrix") settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
 std::vector<ObjectPart> read_parts(const fs::path& package) {
   const pugi::xml_document list = read_document(package, kPartList);
   const pugi::xml_document model = read_document(package, kThreeMfModel);
@@ -146,9 +163,16 @@ std::vector<ObjectPart> read_parts(const fs::path& package) {
         meshes.find_child_by_attribute("object", "id", part.attribute("id").as_string());
     const auto triangles = object.child("mesh").child("triangles").children("triangle");
     const auto count = static_cast<std::size_t>(std::distance(triangles.begin(), triangles.end()));
-    parts.push_back({metadata_of(part, "name"), next, count, is_modifier(part),
-                     metadata_of(part, "sparse_infill_density"), metadata_of(part, "sparse_infill_pattern"),
-                     is_blocker(part)});
+    const bool is_body = !is_modifier(part) && !is_blocker(part);
+    ObjectPart read{metadata_of(part, "name"),
+                    next,
+                    count,
+                    is_modifier(part),
+                    is_body ? "" : metadata_of(part, "sparse_infill_density"),
+                    is_body ? "" : metadata_of(part, "sparse_infill_pattern"),
+                    is_blocker(part)};
+    if (is_body) read.settings = settings_of(part);
+    parts.push_back(std::move(read));
     next += count;
   }
   return parts;
@@ -214,7 +238,13 @@ SlicerProfile orca_slicer() {
           "open it as a project: an import into an open one may lose the infill; PrusaSlicer would "
           "print two bodies in one place: --flavor prusa is for that",
       .has_lightning = true,
-      .has_blockers = true};
+      .has_blockers = true,
+      .support_settings = {{"wall_loops", "1"},
+                           {"sparse_infill_density", "10%"},
+                           {"sparse_infill_pattern", "lightning"},
+                           {"top_shell_layers", "1"},
+                           {"bottom_shell_layers", "0"},
+                           {"minimum_sparse_infill_area", "0"}}};
   row.supports_everywhere = supports_everywhere;
   row.supports_on_plate = "support_on_build_plate_only = 1";
   return row;

@@ -41,7 +41,9 @@ std::string volume_of(const ObjectPart& part, const std::string& name) {
   constexpr const char* kBody = R"(  <volume firstid="{1}" lastid="{2}">
    <metadata type="volume" key="name" value="{0}" />
    <metadata type="volume" key="volume_type" value="ModelPart" />
-  </volume>
+{3}  </volume>
+)";
+  constexpr const char* kSetting = R"(   <metadata type="volume" key="{}" value="{}" />
 )";
   constexpr const char* kModifier = R"(  <volume firstid="{1}" lastid="{2}">
    <metadata type="volume" key="name" value="{0}" />
@@ -61,37 +63,56 @@ std::string volume_of(const ObjectPart& part, const std::string& name) {
 )";
   const std::size_t last = part.end() - 1;
   if (part.blocks_support) return fmt::format(kBlocker, name, part.first_triangle, last);
-  if (!part.is_modifier) return fmt::format(kBody, name, part.first_triangle, last);
+  if (!part.is_modifier) {
+    std::string settings;
+    for (const PartSetting& each : part.settings) settings += fmt::format(kSetting, each.key, each.value);
+    return fmt::format(kBody, name, part.first_triangle, last, settings);
+  }
   const std::string pattern = part.pattern.empty() ? "" : fmt::format(kPattern, part.pattern);
   return fmt::format(kModifier, name, part.first_triangle, last, part.infill, pattern);
 }
 
 // An object of this name, as XML has it.
 ThreeMfExtras with_part_list(const std::string& object_name, const std::string& shown,
-                             const std::string& volumes) {
+                             const std::string& volumes, bool has_supports = false) {
   constexpr const char* kList = R"(<?xml version="1.0"?>
 <config>
  <object id="1" instances_count="1">
   <metadata type="object" key="name" value="{}" />
-{} </object>
+{}{} </object>
 </config>
+)";
+  // Thick bridges would hang down into the gap.
+  constexpr const char* kNoOthers = R"(  <metadata type="object" key="support_material" value="0" />
+  <metadata type="object" key="thick_bridges" value="0" />
 )";
   ThreeMfExtras extras;
   extras.object_name = object_name;
   extras.application = kApplication;
-  extras.entries = {{kPartList, fmt::format(kList, shown, volumes)}};
+  extras.entries = {{kPartList, fmt::format(kList, shown, has_supports ? kNoOthers : "", volumes)}};
   return extras;
 }
 
 std::string file_for(const Mesh& mesh, const ObjectPart& model, const ObjectPart& voids,
                      const std::string& object_name) {
   return to_3mf(mesh, with_part_list(object_name, xml_value(object_name.empty() ? model.name : object_name),
-                                     volume_of(model, model.name) + volume_of(voids, voids.name)));
+                                     volume_of(model, model.name) + volume_of(voids, voids.name),
+                                     !voids.settings.empty()));
 }
 
 std::string named(const Mesh& mesh, const ObjectPart& model, const std::string& object_name) {
   const std::string shown = xml_value(object_name);
   return to_3mf(mesh, with_part_list(object_name, shown, volume_of(model, shown)));
+}
+
+// Of a body; all but its name and kind.
+std::vector<PartSetting> settings_of(const pugi::xml_node& volume) {
+  std::vector<PartSetting> settings;
+  for (const pugi::xml_node metadata : volume.children("metadata")) {
+    PartSetting setting{metadata.attribute("key").as_string(), metadata.attribute("value").as_string()};
+    if (setting.key != "name" && setting.key != "volume_type") settings.push_back(std::move(setting));
+  }
+  return settings;
 }
 
 std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
@@ -101,9 +122,16 @@ std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
     const std::size_t first = volume.attribute("firstid").as_ullong();
     const std::size_t last = volume.attribute("lastid").as_ullong();
     const std::string type = metadata_of(volume, "volume_type");
-    parts.push_back({metadata_of(volume, "name"), first, last + 1 - first, type == "ParameterModifier",
-                     metadata_of(volume, "fill_density"), metadata_of(volume, "fill_pattern"),
-                     type == kBlockerType});
+    const bool is_body = type == "ModelPart";
+    ObjectPart part{metadata_of(volume, "name"),
+                    first,
+                    last + 1 - first,
+                    type == "ParameterModifier",
+                    is_body ? "" : metadata_of(volume, "fill_density"),
+                    is_body ? "" : metadata_of(volume, "fill_pattern"),
+                    type == kBlockerType};
+    if (is_body) part.settings = settings_of(volume);
+    parts.push_back(std::move(part));
   }
   return parts;
 }
@@ -264,9 +292,26 @@ SlicerProfile prusa_slicer() {
       .read = read_parts,
       .elsewhere = "OrcaSlicer and Bambu Studio would print it as one solid body: --flavor orca is for these",
       .has_lightning = true,
-      .has_blockers = true};
+      .has_blockers = true,
+      .support_settings = {{"perimeters", "1"},
+                           {"fill_density", "10%"},
+                           {"fill_pattern", "lightning"},
+                           {"top_solid_layers", "1"},
+                           {"bottom_solid_layers", "0"},
+                           // Else a narrow body would be solid.
+                           {"solid_infill_below_area", "0"},
+                           {"external_perimeter_speed", "100%"},
+                           {"small_perimeter_speed", "100%"}}};
   row.patterns = sparse_patterns();
   row.described_print = described_print;
+  row.no_supports = {{"support_material", "0"}};
+  for (const char* style : {"grid", "snug", "organic"}) {
+    row.own_supports.push_back({style,
+                                {{"support_material", "1"},
+                                 {"support_material_auto", "1"},
+                                 {"support_material_threshold", "45"},
+                                 {"support_material_style", style}}});
+  }
   return row;
 }
 

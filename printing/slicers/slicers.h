@@ -65,12 +65,20 @@ struct ModifierFormat {
   std::string elsewhere = {};  // what other slicers make of such a file, and what else to mind, in words
   bool has_lightning = false;  // the infill kLightning
   bool has_blockers = false;   // volumes in which no supports are built
+  // How supports are printed that are a part of an object: what takes least of what held (docs/supports.md).
+  std::vector<PartSetting> support_settings = {};
 };
 
 // An infill pattern that the slicer has for prints that take little.
 struct SparsePattern {
   std::string name;      // as in its settings, and on the command line
   std::string good_for;  // in a few words
+};
+
+// Supports that the slicer makes, and the settings that ask for them.
+struct OwnSupports {
+  std::string name;
+  std::vector<PartSetting> settings;
 };
 
 // A print as a G-code describes it.
@@ -131,6 +139,9 @@ struct SlicerProfile {
   std::optional<DescribedPrint> (*described_print)(std::string_view gcode) = nullptr;
   // If given: whether a G-code says that supports are built wherever they are wanted, so in voids too.
   bool (*supports_everywhere)(std::string_view gcode) = nullptr;
+  // Kinds of supports that `command` can be asked for by lines of settings, and what turns all of them off.
+  std::vector<OwnSupports> own_supports;
+  std::vector<PartSetting> no_supports;
   std::string supports_on_plate;  // the setting, as a line, with which they are built on the plate alone
 };
 

@@ -30,7 +30,7 @@ void parse_alone(CLI::App& app, std::vector<std::string> arguments) {
 }
 
 std::set<std::string> other_commands(const std::string& name) {
-  std::set<std::string> commands{"hollow", "pack", "inspect", "slice", "hook", "batch", "studio"};
+  std::set<std::string> commands{"hollow", "pack", "inspect", "support", "slice", "hook", "batch", "studio"};
   commands.erase(name);
   return commands;
 }

@@ -52,6 +52,7 @@ struct Program {
     add_hollow_command(app, *config);
     add_pack_command(app, *config);
     add_inspect_command(app, *config);
+    add_support_command(app, *config);
     add_slice_command(app, *config);
     add_hook_command(app, *config);
     add_batch_command(app, *config);

@@ -16,6 +16,7 @@ class ConfigFile;
 void add_hollow_command(CLI::App& app, const ConfigFile& config);
 void add_pack_command(CLI::App& app, const ConfigFile& config);
 void add_inspect_command(CLI::App& app, const ConfigFile& config);
+void add_support_command(CLI::App& app, const ConfigFile& config);
 void add_slice_command(CLI::App& app, const ConfigFile& config);
 void add_hook_command(CLI::App& app, const ConfigFile& config);
 void add_batch_command(CLI::App& app, const ConfigFile& config);

@@ -22,7 +22,8 @@ struct InspectCommand {
   InspectCommand(CLI::App& command, const ConfigFile& config_file)
       : config(config_file),
         model(command),
-        process_option(add_process_option(command, process, "with --drainage")),
+        process_option(add_process_option(command, process,
+                                          "with --drainage (default sla) and --overhangs (default fdm)")),
         up(command, config_file),
         build(command),
         views(command, "the model, with what is wrong at its place"),
@@ -32,6 +33,11 @@ struct InspectCommand {
     command.add_flag("--drainage", drainage,
                      "Also find out how it drains, whoever hollowed it: sealed cavities, holes, what stays, "
                      "suction, the thinnest wall");
+    command.add_flag(
+        "--overhangs", overhangs,
+        "Also find out what cannot be printed without supports: what leans out further than the "
+        "overhang angle and is farther from what holds it than half a bridge, and what begins in "
+        "the air");
     command
         .add_option("--widest-hole", widest_hole,
                     "With --drainage: what is wider belongs to the outside, mm (default twice the process's "
@@ -42,15 +48,26 @@ struct InspectCommand {
 
   // Throws UsageError for options that say how it drains if that is not asked for.
   std::optional<DrainageInquiry> inquiry() const {
-    if (drainage) return DrainageInquiry{choose_process(process), up.direction(), build.build(), widest_hole};
-    if (process_option->count() > 0 || up.is_given() || build.is_given() || widest_hole)
-      throw UsageError("--process, --up, --build and --widest-hole are for --drainage", "add --drainage");
+    if (drainage)
+      return DrainageInquiry{choose_process(process_or("sla")), up.direction(), build.build(), widest_hole};
+    if (build.is_given() || widest_hole)
+      throw UsageError("--build and --widest-hole are for --drainage", "add --drainage");
+    if (!overhangs && (process_option->count() > 0 || up.is_given()))
+      throw UsageError("--process and --up are for --drainage and --overhangs", "add one of them");
     return std::nullopt;
+  }
+
+  std::string process_or(const char* other) const { return process.empty() ? other : process; }
+
+  std::optional<OverhangInquiry> overhang_inquiry() const {
+    if (!overhangs) return std::nullopt;
+    return OverhangInquiry{choose_process(process_or("fdm")), up.direction()};
   }
 
   InspectOptions to_pipeline() const {
     InspectOptions options;
     options.drainage = inquiry();
+    options.overhangs = overhang_inquiry();
     options.model = model.path;
     options.load = model.load();
     options.weld = model.weld;
@@ -61,7 +78,8 @@ struct InspectCommand {
 
   JobFiles files() const {
     JobFiles files{{{"model", model.path}, {"configuration file", config.path()}}, {}};
-    if (drainage) files.inputs.push_back({"process file", process_file_of(process)});
+    if ((drainage || overhangs) && !process.empty())
+      files.inputs.push_back({"process file", process_file_of(process)});
     files.add_outputs(views.files());
     return files;
   }
@@ -73,13 +91,14 @@ struct InspectCommand {
 
   const ConfigFile& config;
   ModelOptions model;
-  std::string process = "sla";
+  std::string process;  // the question's own if empty
   const CLI::Option* process_option;
   DirectionOption up;
   BuildOption build;
   ViewOptions views;
   RunOptions run_options;
   bool drainage = false;
+  bool overhangs = false;
   std::optional<double> widest_hole;
   bool self_intersections = false;
 };

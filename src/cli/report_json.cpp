@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -266,6 +267,28 @@ Json json_of(const DrainageFindings& findings) {
   return json;
 }
 
+Json json_of(const OverhangFindings& findings) {
+  Json json{{"verdict", findings.verdict},
+            {"process", findings.inquiry.process.name},
+            {"up", findings.inquiry.direction.name}};
+  if (!findings.rules) return json;
+  json["overhang_degrees"] = findings.rules->degrees;
+  json["reach_mm"] = findings.rules->reach;
+  json["reach_source"] = findings.rules->reach_source;
+  if (!findings.overhangs) return json;
+  json["spacing_mm"] = findings.overhangs->spacing;
+  json["area_mm2"] = findings.overhangs->area();
+  json["regions"] = Json::array();
+  for (const OverhangRegion& region : findings.overhangs->regions)
+    json["regions"].push_back({{"area_mm2", region.area},
+                               {"place_mm", json_of(region.place)},
+                               {"height_mm", region.height},
+                               {"width_mm", region.width},
+                               {"begins_in_air", !region.farthest},
+                               {"farthest_mm", or_null(region.farthest)}});
+  return json;
+}
+
 Json json_of(const DrainedVoids& drainage, const MeasuredDrainage& measured, Build build) {
   Json holes = Json::array();
   for (const EscapeHole& hole : drainage.plan.holes) {
@@ -510,6 +533,7 @@ std::string to_json(const InspectReport& report) {
   json["shells"] = shells;
   json["use"] = report.use;
   json["drainage"] = report.drainage ? json_of(*report.drainage) : Json(nullptr);
+  json["overhangs"] = report.overhangs ? json_of(*report.overhangs) : Json(nullptr);
   if (report.self_intersections) {
     Json places = Json::array();
     for (const Vec3d place : report.self_intersections->places) places.push_back(json_of(place));
@@ -517,6 +541,46 @@ std::string to_json(const InspectReport& report) {
   } else {
     json["self_intersections"] = nullptr;
   }
+  add_closing(json, report.stages, report.notices);
+  return dump(json);
+}
+
+std::string to_json(const SupportReport& report) {
+  const SupportFacts& facts = report.facts;
+  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json json = report_header("support");
+  json["input"] = json_of(report.input);
+  json["process"] = report.process.name;
+  json["up"] = report.direction.name;
+  json["limits"] = {
+      {"overhang_degrees", report.rules.degrees},    {"reach_mm", report.rules.reach},
+      {"reach_source", report.rules.reach_source},   {"layer_mm", report.rules.layer},
+      {"clearance_mm", report.shape.body.clearance}, {"contact_gap_mm", report.shape.tooth.gap}};
+  json["overhangs"] = {{"count", report.overhangs.regions.size()}, {"area_mm2", report.overhangs.area()}};
+  json["body"] = {{"volume_mm3", report.body_volume},
+                  {"fill", report.foam.empty() ? Json("plain") : Json(report.foam)},
+                  {"volume_after_mm3", facts.volume},
+                  {"distance_mm", finite(facts.body_distance)},
+                  {"footing_margin_mm", or_null(facts.footing_margin)},
+                  {"unsupported_mm2", or_null(facts.own_unsupported_area)}};
+  json["teeth"] = {{"kind", report.shape.kind == ToothKind::ridge ? "ridges" : "cones"},
+                   {"count", report.tooth_count},
+                   {"on_model", report.foot_count},
+                   {"width_mm", report.shape.tooth.width},
+                   {"distance_mm", finite(facts.tooth_distance)},
+                   {"tip_area_mm2", report.tip_area},
+                   {"strength_mpa", report.strength},
+                   {"force_estimate_n", report.force()}};
+  json["contact"] = {{"area_mm2", facts.contact_area},
+                     {"farthest_mm", finite(facts.farthest)},
+                     {"unsupported_mm2", facts.unsupported_area}};
+  Json settings = Json::object();
+  for (const PartSetting& setting : report.part_settings) settings[setting.key] = setting.value;
+  json["parts"] = report.parts_for == nullptr
+                      ? Json(nullptr)
+                      : Json{{"flavor", report.parts_for->modifiers->flavor}, {"settings", settings}};
+  json["output"] = {
+      {"path", report.output.string()}, {"bytes", report.output_bytes}, {"triangles", facts.triangle_count}};
   add_closing(json, report.stages, report.notices);
   return dump(json);
 }

@@ -455,6 +455,20 @@ void add_findings(Lines& lines, const DrainageFindings& findings) {
               air.found.wall->thickness, point(air.found.wall->place));
 }
 
+void add_overhangs(Lines& lines, const OverhangFindings& findings) {
+  lines.add("overhangs", "{}", findings.verdict);
+  if (!findings.overhangs) return;
+  lines.add("", "for {}, up is {} ({}): beyond {:g} degrees, and {:g} mm from what holds it; {}",
+            findings.inquiry.process.name, findings.inquiry.direction.name, findings.inquiry.direction.origin,
+            findings.rules->degrees, findings.rules->reach, findings.rules->reach_source);
+  add_some(lines, findings.overhangs->regions, [&](const OverhangRegion& region, bool) {
+    const std::string how = region.farthest ? fmt::format("{:.1f} mm from what holds it", *region.farthest)
+                                            : std::string("begins in the air");
+    lines.add("", "{:.1f} mm2, {:.1f} mm wide, near {} mm, {:.1f} mm up: {}", region.area, region.width,
+              point(region.place), region.height, how);
+  });
+}
+
 }  // namespace
 
 std::string to_text(const HollowReport& report) {
@@ -570,7 +584,53 @@ std::string to_text(const InspectReport& report) {
     for (const Vec3d place : report.self_intersections->places) lines.add("", "near {} mm", point(place));
   }
   if (report.drainage) add_findings(lines, *report.drainage);
+  if (report.overhangs) add_overhangs(lines, *report.overhangs);
   lines.add("use", "{}", report.use);
+  add_stages(lines, report.stages);
+  return lines.take();
+}
+
+std::string to_text(const SupportReport& report) {
+  const SupportFacts& facts = report.facts;
+  const bool are_ridges = report.shape.kind == ToothKind::ridge;
+  Lines lines;
+  add_input(lines, report.input);
+  lines.add("overhangs",
+            "{}, {:.1f} mm2 seen from above; beyond {:g} degrees and {:g} mm from what holds them ({})",
+            count_of(report.overhangs.regions.size(), "overhang", "overhangs"), report.overhangs.area(),
+            report.rules.degrees, report.rules.reach, report.process.name);
+  lines.add("body", "{:.1f} mm3{}", report.body_volume,
+            report.foam.empty() ? std::string()
+                                : fmt::format(" -> {:.1f} mm3, {} in it", facts.volume, report.foam));
+  if (report.foam.empty() && report.rules.is_filament && report.parts_for == nullptr)
+    lines.add(
+        "",
+        "print it with one perimeter, lightning infill of 10 % and one top layer, as --parts tells a slicer");
+  if (std::isfinite(facts.body_distance))
+    lines.add("", "{}{:.2f} mm from the model (clearance {:g} mm)",
+              facts.body_distance < 2 * report.shape.body.clearance ? "" : "more than ", facts.body_distance,
+              report.shape.body.clearance);
+  lines.add("teeth", "{}{}, {:g} mm wide, {}",
+            count_of(report.tooth_count, are_ridges ? "ridge" : "cone", are_ridges ? "ridges" : "cones"),
+            report.foot_count > 0 ? fmt::format(", and {} on the model", grouped(report.foot_count)) : "",
+            report.shape.tooth.width,
+            report.shape.tooth.gap > 0 ? fmt::format("a gap of {:g} mm", report.shape.tooth.gap)
+                                       : std::string("joined to the model"));
+  lines.add("contact", "{:.1f} mm2 of the model's underside; {}", facts.contact_area,
+            std::isfinite(facts.farthest)
+                ? fmt::format("an overhang is {:.2f} mm from what holds it at most", facts.farthest)
+                : std::string("there is a place that nothing holds"));
+  for (const PartSetting& setting : report.part_settings)
+    lines.add(&setting == report.part_settings.data() ? "settings" : "", "{} = {}", setting.key,
+              setting.value);
+  lines.add("force",
+            "about {:.0f} N to break all teeth at once, if they hold as well as solid material: an estimate",
+            report.force());
+  if (facts.footing_margin)
+    lines.add("stands", "centres of mass are at least {:.2f} mm inside of feet", *facts.footing_margin);
+  lines.add("output", "{}: {}, {}", report.output.filename().string(),
+            count_of(facts.triangle_count, "triangle", "triangles"),
+            format_bytes(static_cast<double>(report.output_bytes)));
   add_stages(lines, report.stages);
   return lines.take();
 }

@@ -11,8 +11,10 @@
 #include "cli/model_options.h"
 #include "cli/run_reported.h"
 #include "cli/view_options.h"
+#include "core/error.h"
 #include "core/listed.h"
 #include "pipeline/slice_model.h"
+#include "pipeline/slice_supports.h"
 
 namespace aerate::cli {
 namespace {
@@ -61,6 +63,10 @@ struct SliceCommand {
         ->required()
         ->check(CLI::IsMember(of_slicers(name_of)))
         ->type_name("NAME");
+    command.add_flag(
+        "--supports", supports,
+        "Instead: make supports as 'aerate support --parts' does, slice the model with them, and compare "
+        "with the slicer's own");
     // Of the slicer: the program's own options file has to be named before the command.
     command
         .add_option("--config", settings,
@@ -82,12 +88,43 @@ struct SliceCommand {
     return options;
   }
 
+  // Throws UsageError for what says how a model is hollowed.
+  SliceSupportsOptions with_supports() const {
+    SliceModelOptions sliced = to_pipeline();
+    if (sliced.request.form || sliced.comparison != Comparison::lightning || sliced.views.are_asked_for())
+      throw UsageError("--supports makes no voids: --as, --compare, --picture and --view are for these",
+                       "leave them out, or --supports");
+    SliceSupportsOptions options;
+    options.output = output;
+    options.slicer = sliced.slicer;
+    options.slicer_path = sliced.request.slicer_path;
+    options.settings = sliced.settings;
+    const HollowOptions& hollow = sliced.request.hollow;
+    options.support.model = hollow.model;
+    options.support.load = hollow.load;
+    options.support.weld = hollow.weld;
+    options.support.process = hollow.packing.process.process;
+    options.support.direction = hollow.packing.process.direction;
+    return options;
+  }
+
   void run() const {
+    if (supports) {
+      const SliceSupportsOptions options = with_supports();
+      run_reported(run_options, files(options.output),
+                   [&](Monitor& monitor) { return slice_supports(options, monitor); });
+      return;
+    }
     const SliceModelOptions options = to_pipeline();
-    JobFiles files{form.inputs(model), {options.output}};
+    run_reported(run_options, files(options.output),
+                 [&](Monitor& monitor) { return slice_model(options, monitor); });
+  }
+
+  JobFiles files(const std::filesystem::path& gcode) const {
+    JobFiles files{form.inputs(model), {gcode}};
     for (const std::string& file : settings) files.inputs.push_back({"file of settings", file});
     files.add_outputs(views.files());
-    run_reported(run_options, files, [&](Monitor& monitor) { return slice_model(options, monitor); });
+    return files;
   }
 
   ModelOptions model;
@@ -96,6 +133,7 @@ struct SliceCommand {
   RunOptions run_options;
   std::string output;
   std::string slicer;
+  bool supports = false;
   std::string comparison = "lightning";
   std::vector<std::string> settings;
 };

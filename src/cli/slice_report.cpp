@@ -205,4 +205,51 @@ std::string to_json(const HookReport& report) {
   return closed(json, report);
 }
 
+std::string to_text(const SliceSupportsReport& report) {
+  constexpr const char* kRow = "{:<12}{:>13}{:>9}{:>9}{:>13}{:>8}\n";
+  std::string text =
+      fmt::format("{:<12}{}\n{:<12}{} ({})\n", "model", printable(report.model.filename().string()), "slicer",
+                  report.slicer.profile->name, printable(report.slicer.program.string()));
+  text += fmt::format(fmt::runtime(kRow), "supports", "filament mm", "cm3", "g", "time", "layers");
+  for (const SupportedForm& form : report.forms) {
+    const GcodeFigures& figures = form.figures;
+    text += fmt::format(fmt::runtime(kRow), form.name, cell(figures.filament_mm, 2),
+                        cell(figures.filament_cm3, 2), cell(figures.filament_g, 2), duration(figures.seconds),
+                        figures.layers);
+  }
+  for (const std::string& name : report.failed) text += fmt::format("{:<12}this version has none\n", name);
+  const SupportFacts& facts = report.supports.facts;
+  text += fmt::format("{:<12}{:.1f} mm2 of the model's underside (aerate)\n", "contact", facts.contact_area);
+  const StageCost total = total_of(report.stages);
+  return text + fmt::format("{:<12}{}: with supports of aerate\n{:<12}{:.1f} s\n", "output",
+                            printable(report.output.filename().string()), "time", total.seconds);
+}
+
+std::string to_json(const SliceSupportsReport& report) {
+  Json json = report_header("slice_supports");
+  json["model"] = report.model.string();
+  const auto& version = report.slicer.facts.version;
+  json["slicer"] = {{"name", report.slicer.profile->name},
+                    {"program", report.slicer.program.string()},
+                    {"version", version ? Json(to_text(*version)) : Json(nullptr)}};
+  json["forms"] = Json::array();
+  for (const SupportedForm& form : report.forms) {
+    const GcodeFigures& figures = form.figures;
+    json["forms"].push_back({{"supports", form.name},
+                             {"filament_mm", or_null(figures.filament_mm)},
+                             {"filament_cm3", or_null(figures.filament_cm3)},
+                             {"filament_g", or_null(figures.filament_g)},
+                             {"seconds", or_null(figures.seconds)},
+                             {"layers", figures.layers},
+                             {"slicer_seconds", form.slicer_seconds}});
+  }
+  json["not_sliced"] = report.failed;
+  json["contact_mm2"] = report.supports.facts.contact_area;
+  json["farthest_mm"] =
+      std::isfinite(report.supports.facts.farthest) ? Json(report.supports.facts.farthest) : Json(nullptr);
+  json["output"] = report.output.string();
+  add_closing(json, report.stages, report.notices);
+  return dump(json);
+}
+
 }  // namespace aerate::cli

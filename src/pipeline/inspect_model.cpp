@@ -25,6 +25,10 @@ InspectedModel look_at(const InspectOptions& options, bool is_shown, JobLog& log
     log.stage("drainage");
     report.drainage = inspect_drainage_of(model, *options.drainage, log);
   }
+  if (options.overhangs) {
+    log.stage("overhangs");
+    report.overhangs = find_overhangs_of(model, *options.overhangs, log);
+  }
   if (is_shown) inspected.mesh = model.mesh;
   ModelUse use = use_of(std::move(model), {.mode = SurfaceMode::automatic, .weld = options.weld});
   inspected.refusal = std::move(use.refusal);

@@ -6,6 +6,7 @@
 #include "core/monitor.h"
 #include "files/load.h"
 #include "pipeline/drainage_verdict.h"
+#include "pipeline/overhang_findings.h"
 #include "pipeline/report.h"
 #include "pipeline/view_outputs.h"
 
@@ -19,7 +20,8 @@ struct InspectOptions {
   LoadOptions load;
   std::optional<double> weld;  // see HollowOptions
   SelfIntersectionSearch self_intersections = SelfIntersectionSearch::off;
-  std::optional<DrainageInquiry> drainage;  // how it drains is asked, too
+  std::optional<DrainageInquiry> drainage;   // how it drains is asked, too
+  std::optional<OverhangInquiry> overhangs;  // and what needs supports
   ViewOutputs views;
 };
 

@@ -16,6 +16,7 @@
 #include "pipeline/input_facts.h"
 #include "pipeline/open_cavities.h"
 #include "pipeline/options.h"
+#include "pipeline/overhang_findings.h"
 #include "pipeline/plug_file.h"
 #include "pipeline/print_prediction.h"
 #include "pipeline/stand.h"
@@ -150,6 +151,7 @@ struct InspectReport {
   std::optional<SelfIntersections> self_intersections;
   std::string use;  // what hollowing will make of it
   std::optional<DrainageFindings> drainage;
+  std::optional<OverhangFindings> overhangs;
   std::vector<StageCost> stages;
   std::vector<std::string> notices;
 };

@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True
 from completing import SHELLS, is_there  # noqa: E402
 
 SHELL, COMPLETIONS, PROGRAM = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve()
-COMMANDS = {"hollow", "pack", "inspect", "slice", "hook", "batch", "studio"}
+COMMANDS = {"hollow", "pack", "inspect", "support", "slice", "hook", "batch", "studio"}
 
 
 def options_in_help(*command):
@@ -47,7 +47,7 @@ class Completions(unittest.TestCase):
     def test_commands(self):
         self.assertEqual(self.offered("aerate "), COMMANDS)
         self.assertEqual(self.offered("aerate hol"), {"hollow"})
-        self.assertEqual(self.offered("aerate s"), {"slice", "studio"})
+        self.assertEqual(self.offered("aerate s"), {"slice", "studio", "support"})
         self.assertEqual(self.offered("aerate --config settings.ini ba"), {"batch"})
 
     def test_every_option_of_every_command(self):
@@ -59,7 +59,7 @@ class Completions(unittest.TestCase):
 
     def test_values(self):
         processes = {"fdm", "sla", "sls", "metal", "list"}
-        for command in ("hollow", "pack", "inspect", "slice", "hook", "batch"):
+        for command in ("hollow", "pack", "inspect", "support", "slice", "hook", "batch"):
             with self.subTest(command):
                 self.assertEqual(self.offered(f"aerate {command} --process "), processes)
         self.assertEqual(self.offered("aerate hollow --process sl"), {"sla", "sls"})
@@ -79,7 +79,7 @@ class Completions(unittest.TestCase):
 
     def test_models(self):
         models = {"bunny.stl", "my model.STL", "part.3mf", "sub", "texts"}
-        for command in ("hollow", "pack", "inspect", "slice", "studio"):
+        for command in ("hollow", "pack", "inspect", "support", "slice", "studio"):
             with self.subTest(command):
                 self.assertEqual(self.files(f"aerate {command} "), models)
         self.assertEqual(self.files("aerate batch "), models | {"table.csv"})

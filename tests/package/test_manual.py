@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 PAGES, PROGRAM = Path(sys.argv[1]) / "man1", sys.argv[2]
-COMMANDS = ("hollow", "pack", "inspect", "slice", "hook", "batch", "studio")
+COMMANDS = ("hollow", "pack", "inspect", "support", "slice", "hook", "batch", "studio")
 
 
 def help_of(*command):

@@ -141,6 +141,27 @@ TEST_F(ModifiersIn3mf, SupportBlockersAreNamedAndKnownAgain) {
   EXPECT_EQ(count, 2u);
 }
 
+TEST_F(ModifiersIn3mf, SupportsAreAPartWithSettings) {
+  const Mesh model = make_box({0, 0, 0}, {10, 10, 10});
+  const Mesh both = join(model, make_box({20, 0, 0}, {30, 10, 5}));
+  std::size_t count = 0;
+  for (const SlicerProfile& slicer : those_that_take_them()) {
+    if (slicer.modifiers->support_settings.empty()) continue;
+    ++count;
+    SCOPED_TRACE(slicer.name);
+    std::vector<PartSetting> settings = slicer.modifiers->support_settings;
+    settings.push_back({"extruder", "2"});
+    const std::vector<ObjectPart> parts = support_parts(12, 12, settings);
+    const auto path = file(slicer.modifiers->file(both, parts.front(), parts.back(), "part"));
+    EXPECT_EQ(slicer.modifiers->read(path), parts);
+    settings.back().value = "1";
+    EXPECT_NE(slicer.modifiers->read(path), support_parts(12, 12, settings));
+    const LoadedModel loaded = load_model(path, {.unit = {}, .volume_lists = volume_lists()});
+    EXPECT_EQ(signed_volume(loaded.mesh), 1000 + 500);
+  }
+  EXPECT_EQ(count, 2u);
+}
+
 TEST_F(ModifiersIn3mf, AreBodiesOfTheirOwn) {
   const Solid solid = box_with_a_void();
   const Mesh bodies = with_void_shells_turned(solid.mesh, solid);

@@ -31,30 +31,6 @@ double height_at(const kernels::Facet& facet, double x, double y) {
   return std::isfinite(height) ? std::clamp(height, least, most) : least;
 }
 
-std::vector<AirSpan> spans_at(const kernels::WindingView& winding, double x, double y) {
-  const Box3d& box = winding.box;
-  if (x < box.lower.x || x > box.upper.x || y < box.lower.y || y > box.upper.y) return {AirSpan{}};
-  std::vector<Crossing> crossings;
-  winding.for_each_near(x, y, [&](std::uint32_t i) {
-    const int sign = kernels::winding_detail::line_crossing(winding.facets[i], x, y);
-    if (sign != 0) crossings.push_back({height_at(winding.facets[i], x, y), sign});
-  });
-  std::stable_sort(crossings.begin(), crossings.end(),
-                   [](const Crossing& a, const Crossing& b) { return a.height < b.height; });
-  std::vector<AirSpan> spans;
-  int inside = 0;
-  double floor = -kInfinity;
-  for (const Crossing& crossing : crossings) {
-    const int next = inside - crossing.leaves;
-    if (inside <= 0 && next > 0 && crossing.height > floor + kLeastHeight)
-      spans.push_back({floor, crossing.height});
-    if (inside > 0 && next <= 0) floor = crossing.height;
-    inside = next;
-  }
-  spans.push_back({floor, kInfinity});
-  return spans;
-}
-
 // Pairs of neighbouring columns: along x, along y, and along both diagonals. In coordinates u and v the line
 // between the columns of a pair runs along v, from one whole number to the next, at a whole u.
 constexpr int kFamilies = 4;
@@ -244,8 +220,8 @@ void add_spans(AirColumns& columns, const kernels::WindingView& winding) {
   std::vector<std::vector<AirSpan>> by_column(static_cast<std::size_t>(columns.count_x) * columns.count_y);
   tbb::parallel_for(std::uint32_t{0}, columns.count_y, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < columns.count_x; ++x)
-      by_column[columns.column(x, y)] =
-          spans_at(winding, columns.origin_x + columns.spacing * x, columns.origin_y + columns.spacing * y);
+      by_column[columns.column(x, y)] = air_spans_at(winding, columns.origin_x + columns.spacing * x,
+                                                     columns.origin_y + columns.spacing * y);
   });
   columns.first.assign(1, 0);
   for (std::size_t i = 0; i < by_column.size(); ++i) {
@@ -256,6 +232,30 @@ void add_spans(AirColumns& columns, const kernels::WindingView& winding) {
 }
 
 }  // namespace
+
+std::vector<AirSpan> air_spans_at(const kernels::WindingView& winding, double x, double y) {
+  const Box3d& box = winding.box;
+  if (x < box.lower.x || x > box.upper.x || y < box.lower.y || y > box.upper.y) return {AirSpan{}};
+  std::vector<Crossing> crossings;
+  winding.for_each_near(x, y, [&](std::uint32_t i) {
+    const int sign = kernels::winding_detail::line_crossing(winding.facets[i], x, y);
+    if (sign != 0) crossings.push_back({height_at(winding.facets[i], x, y), sign});
+  });
+  std::stable_sort(crossings.begin(), crossings.end(),
+                   [](const Crossing& a, const Crossing& b) { return a.height < b.height; });
+  std::vector<AirSpan> spans;
+  int inside = 0;
+  double floor = -kInfinity;
+  for (const Crossing& crossing : crossings) {
+    const int next = inside - crossing.leaves;
+    if (inside <= 0 && next > 0 && crossing.height > floor + kLeastHeight)
+      spans.push_back({floor, crossing.height});
+    if (inside > 0 && next <= 0) floor = crossing.height;
+    inside = next;
+  }
+  spans.push_back({floor, kInfinity});
+  return spans;
+}
 
 AirColumns air_columns(const Mesh& upright, const kernels::WindingView& winding, double spacing,
                        std::uint32_t margin) {

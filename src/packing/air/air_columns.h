@@ -58,6 +58,9 @@ struct AirColumns {
   }
 };
 
+// The spans of one column, from the lowest to the highest.
+std::vector<AirSpan> air_spans_at(const kernels::WindingView& winding, double x, double y);
+
 // `upright`: closed, up is +z; `winding`: of it. `margin`: columns of mere air round the model, at least 1.
 AirColumns air_columns(const Mesh& upright, const kernels::WindingView& winding, double spacing,
                        std::uint32_t margin);

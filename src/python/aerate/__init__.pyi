@@ -89,6 +89,7 @@ def inspect(
     threads: _Value = ...,
     self_intersections: _Flag = ...,
     drainage: _Flag = ...,
+    overhangs: _Flag = ...,
     widest_hole: _Value = ...,
     config: _Value = ...,
 ) -> dict[str, Any]: ...

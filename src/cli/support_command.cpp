@@ -1,0 +1,194 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/called_commands.h"
+#include "cli/commands.h"
+#include "cli/model_options.h"
+#include "cli/numbers.h"
+#include "cli/process_options.h"
+#include "cli/run_reported.h"
+#include "core/error.h"
+#include "files/formats.h"
+#include "pipeline/support.h"
+
+namespace aerate::cli {
+namespace {
+
+enum class Fill { plain, spheres, cells };
+const std::map<std::string, Fill> kFills{
+    {"plain", Fill::plain}, {"spheres", Fill::spheres}, {"cells", Fill::cells}};
+
+// Slicers that have a format for parts, by what it is called.
+std::map<std::string, const SlicerProfile*> flavors() {
+  std::map<std::string, const SlicerProfile*> known;
+  for (const SlicerProfile& slicer : slicers())
+    if (slicer.modifiers && !slicer.modifiers->support_settings.empty())
+      known[slicer.modifiers->flavor] = &slicer;
+  return known;
+}
+
+// What the job of voids tells of itself says nothing of supports.
+class QuietMonitor : public Monitor {
+ public:
+  explicit QuietMonitor(Monitor& inner) : inner_(inner) {}
+  void check_interrupted() override { inner_.check_interrupted(); }
+
+ private:
+  Monitor& inner_;
+};
+
+// What `hollow` does with the body, under the limits of the process and the thinnest walls that it prints.
+FoamedBody foamed(const Mesh& body, Fill fill, const std::string& process, Monitor& monitor) {
+  const Process limits = choose_process(process);
+  std::vector<double> vertices;
+  std::vector<std::int64_t> triangles;
+  vertices.reserve(3 * body.positions.size());
+  triangles.reserve(3 * body.triangles.size());
+  for (const Vec3f& p : body.positions)
+    for (const float value : {p.x, p.y, p.z}) vertices.push_back(static_cast<double>(value));
+  for (const Triangle& t : body.triangles)
+    for (const std::uint32_t corner : t) triangles.push_back(corner);
+  const MeshArrays arrays{vertices, triangles};
+  const double wall = limits.limits.at(Limit::least_wall).value,
+               gap = limits.limits.at(Limit::least_gap).value;
+  const Call call{"supports",
+                  &arrays,
+                  {"--process=" + process, fill == Fill::cells ? "--shape=cells" : "--shape=spheres",
+                   fmt::format("--wall={:g}", wall), fmt::format("--gap={:g}", gap)}};
+  FoamedBody result;
+  QuietMonitor quiet(monitor);
+  result.mesh = called_hollow().run(call, quiet).mesh;
+  result.words = fill == Fill::cells ? "cells" : "spheres";
+  return result;
+}
+
+struct SupportCommand {
+  SupportCommand(CLI::App& command, const ConfigFile& config_file)
+      : config(config_file),
+        model(command),
+        process_option(
+            add_process_option(command, process, "says what needs supports, and how they are made")),
+        up(command, config_file),
+        run_options(command) {
+    command
+        .add_option("-o,--output", output,
+                    fmt::format("The supports alone, {}; with --parts model and supports, .3mf",
+                                endings_that_are_written()))
+        ->required()
+        ->check(names_a_file())
+        ->type_name("FILE");
+    command
+        .add_option("--clearance", clearance,
+                    "What the body leaves free between itself and the model (default 0.8)")
+        ->check(number_between({}, 20, "mm"))
+        ->type_name("MM");
+    command
+        .add_option(
+            "--contact-gap", contact_gap,
+            "What teeth leave free below what they hold, and above what they stand on, in whole layers; 0: "
+            "they are joined to it (default 0.2 for fdm, else 0)")
+        ->check(number_between(0.0, 5, "mm"))
+        ->type_name("MM");
+    command
+        .add_option(
+            "--tooth", tooth,
+            "Width of what touches the model: of ridges (default 0.5), for resin and metal of flat tips "
+            "(default 0.4); at least a line or a pixel")
+        ->check(number_between(0.05, 5, "mm"))
+        ->type_name("MM");
+    command.add_option("--layer-height", layer_height, "Of the print (default 0.2 for fdm, else 0.05)")
+        ->check(number_between(0.01, 1, "mm"))
+        ->type_name("MM");
+    command.add_option("--plate", plate, "Height of the plate along --up (default the model's lowest point)")
+        ->check(CLI::Number)
+        ->type_name("MM");
+    command
+        .add_option(
+            "--fill", fill,
+            "Voids in the body: plain (none; print it with one perimeter and no infill), spheres or cells "
+            "(default plain for fdm, else cells)")
+        ->check(CLI::IsMember(kFills))
+        ->type_name("WHAT");
+    command
+        .add_option("--parts", parts,
+                    "Write the model with the supports as a part of its own that this slicer prints with the "
+                    "settings "
+                    "that took least: prusa or orca; the slicer's own supports are off for it")
+        ->check(CLI::IsMember(flavors()))
+        ->type_name("SLICER");
+    command.add_option("--extruder", extruder, "With --parts: the extruder that prints the supports, from 1")
+        ->check(whole_number_between(1, 16, ""))
+        ->type_name("N");
+  }
+
+  SupportOptions to_pipeline() const {
+    SupportOptions options;
+    options.model = model.path;
+    options.output = output;
+    options.load = model.load();
+    options.weld = model.weld;
+    options.process = choose_process(process);
+    options.direction = up.direction();
+    options.clearance = clearance;
+    options.contact_gap = contact_gap;
+    options.tooth = tooth;
+    options.layer_height = layer_height;
+    options.plate = plate;
+    if (!parts.empty()) options.parts_for = flavors().at(parts);
+    if (extruder && parts.empty())
+      throw UsageError("--extruder is for supports that are a part", "add --parts prusa or --parts orca");
+    if (extruder) options.extruder = static_cast<int>(*extruder);
+    const bool is_filament = options.process.drainage == Drainage::not_needed;
+    const Fill what = !fill.empty() ? kFills.at(fill) : is_filament ? Fill::plain : Fill::cells;
+    if (what != Fill::plain)
+      options.foam = [what, name = process, is_asked = !fill.empty()](const Mesh& body, Monitor& monitor) {
+        try {
+          return foamed(body, what, name, monitor);
+        } catch (const Error& error) {
+          if (is_asked || error.code() != ExitCode::nothing_to_remove) throw;
+          monitor.notice(std::string("the body stays plain: ") + error.what());
+          return FoamedBody{body, ""};
+        }
+      };
+    return options;
+  }
+
+  JobFiles files() const {
+    return {{{"model", model.path},
+             {"configuration file", config.path()},
+             {"process file", process_file_of(process)}},
+            {output}};
+  }
+
+  void run() const {
+    const SupportOptions options = to_pipeline();
+    run_reported(run_options, files(), [&](Monitor& monitor) { return support_model(options, monitor); });
+  }
+
+  const ConfigFile& config;
+  ModelOptions model;
+  std::string process = "fdm";
+  const CLI::Option* process_option;
+  DirectionOption up;
+  RunOptions run_options;
+  std::string output;
+  std::optional<double> clearance, contact_gap, tooth, layer_height, plate;
+  std::string fill, parts;
+  std::optional<double> extruder;
+};
+
+}  // namespace
+
+void add_support_command(CLI::App& app, const ConfigFile& config) {
+  CLI::App& command =
+      *app.add_subcommand("support", "Make supports that break away for what hangs over, and write them");
+  command.callback([job = std::make_shared<SupportCommand>(command, config)] { job->run(); });
+}
+
+}  // namespace aerate::cli

@@ -1,0 +1,220 @@
+#include "pipeline/support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+#include "check/same_triangles.h"
+#include "core/error.h"
+#include "core/surface_index.h"
+#include "core/upright.h"
+#include "files/formats.h"
+#include "files/output_file.h"
+#include "pipeline/announced_file.h"
+#include "pipeline/job_log.h"
+#include "pipeline/prepare.h"
+
+namespace aerate {
+namespace {
+
+// Across layers, about: half of what data sheets give for PLA, all of it for a usual resin and for AlSi10Mg as built.
+constexpr double kFilamentStrength = 25, kResinStrength = 45, kMetalStrength = 300;
+
+double strength_of(const Process& process) {
+  if (process.drainage == Drainage::not_needed) return kFilamentStrength;
+  return process.limits.contains(Limit::bridge) ? kMetalStrength : kResinStrength;
+}
+
+// Whole layers, at least one where any gap is wanted.
+double in_layers(double gap, double layer, Monitor& monitor) {
+  if (gap <= 0) return 0;
+  const double layers = std::max(1.0, std::round(gap / layer));
+  const double rounded = layers * layer;
+  if (std::abs(rounded - gap) > 1e-6)
+    monitor.notice(fmt::format("--contact-gap {:g} mm is rounded to {:g} mm: {:g} {} of {:g} mm", gap,
+                               rounded, layers, layers == 1 ? "layer" : "layers", layer));
+  return rounded;
+}
+
+SupportShape shape_for(const SupportOptions& options, const SupportRules& rules, Monitor& monitor) {
+  SupportShape shape = usual_shape(rules);
+  if (options.clearance) shape.body.clearance = *options.clearance;
+  if (options.tooth) shape.tooth.width = *options.tooth;
+  shape.tooth.gap = in_layers(options.contact_gap.value_or(shape.tooth.gap), rules.layer, monitor);
+  // A lower tooth is not printed.
+  shape.tooth.least_height = 0.9 * rules.layer;
+  if (shape.tooth.gap >= shape.body.clearance)
+    throw UsageError(
+        fmt::format(
+            "a contact gap of {:g} mm leaves more free than the clearance of {:g} mm, so that teeth would "
+            "not reach out of the body",
+            shape.tooth.gap, shape.body.clearance),
+        "give a smaller --contact-gap or a larger --clearance");
+  // So that the body keeps its clearance below what it holds.
+  shape.body.tooth_height = shape.body.clearance + 0.4;
+  return shape;
+}
+
+Mesh turned_back(Mesh mesh, const UprightFrame& frame) {
+  if (frame.is_the_models_own()) return mesh;
+  for (Vec3f& p : mesh.positions) {
+    const Vec3d at = to_double(p);
+    p = to_float(frame.x * at.x + frame.y * at.y + frame.z * at.z);
+  }
+  return mesh;
+}
+
+double plate_for(const SupportOptions& options, const Mesh& upright) {
+  const double lowest = static_cast<double>(bounding_box(upright).lower.z);
+  if (!options.plate) return lowest;
+  if (*options.plate > lowest + 1e-6)
+    throw UsageError(fmt::format("--plate {:g}: the model begins {:g} mm below that, at {:g} mm along up",
+                                 *options.plate, *options.plate - lowest, lowest),
+                     "give no more than that, or leave it out for a plate at the model's lowest point");
+  return *options.plate;
+}
+
+// Points between folds of a surface: of a real model few are left.
+constexpr double kMostLeft = 2;  // mm2
+
+[[noreturn]] void refuse_unreached(const SupportFacts& facts, const Supports& supports,
+                                   const SupportRules& rules, const SupportShape& shape,
+                                   const UprightFrame& frame) {
+  const Vec3d up = *facts.farthest_place;
+  const Vec3d at = frame.x * up.x + frame.y * up.y + frame.z * up.z;
+  const std::string far = std::isfinite(facts.farthest)
+                              ? fmt::format("{:.2f} mm from what holds it", facts.farthest)
+                              : std::string("held by nothing");
+  if (supports.no_room == 0)
+    throw FailureError(
+        fmt::format("the result failed its check, so it was not kept: the overhang near ({:.2f}, "
+                    "{:.2f}, {:.2f}) mm is {}, {:g} mm are allowed",
+                    at.x, at.y, at.z, far, rules.reach),
+        "please report this with the model and the options");
+  throw MeshError(
+      fmt::format("the overhang near ({:.2f}, {:.2f}, {:.2f}) mm is {}, and no support fits there: what "
+                  "is below is nearer than two gaps of {:g} mm and a layer",
+                  at.x, at.y, at.z, far, shape.tooth.gap),
+      "give a smaller --contact-gap, print it another way --up, or let the slicer make supports there");
+}
+
+// Drawn in less where bodies would tip over.
+Supports make_standing(const SurfaceIndex& model, const Undersides& undersides, const SupportRules& rules,
+                       SupportShape& shape, Monitor& monitor) {
+  constexpr int kTries = 4;
+  Supports supports = make_supports(model, undersides, rules, shape, monitor);
+  for (int i = 1; i < kTries && shape.tooth.gap > 0; ++i) {
+    const auto margin = least_footing_margin(supports.body, supports.body.triangles, undersides.plate);
+    if (!margin || *margin >= 0) break;
+    shape.body.foot *= 2;
+    supports = make_supports(model, undersides, rules, shape, monitor);
+  }
+  return supports;
+}
+
+}  // namespace
+
+SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
+  SupportRules rules = require_support_rules(options.process);
+  const MeshFormat& format = format_to_write(options.output);
+  if (options.parts_for != nullptr && &format != &MeshFormat::three_mf)
+    throw UsageError(fmt::format("{}: model and supports as parts need a 3MF", options.output.string()),
+                     "give a name that ends in .3mf, or leave out --parts");
+  if (options.parts_for != nullptr && options.foam)
+    throw UsageError("--parts is for a plain body, whose settings leave out its infill; voids need it solid",
+                     "leave out --fill, or --parts");
+  JobLog log(monitor);
+  if (options.layer_height) rules.layer = *options.layer_height;
+  SupportReport report;
+  report.shape = shape_for(options, rules, log);
+  AnnouncedFile pending(options.output, log);
+
+  PreparedModel model = load_and_inspect({options.model, nullptr}, options.load, log);
+  model = make_usable(std::move(model), {.mode = SurfaceMode::keep, .weld = options.weld}, log);
+  const UprightFrame frame(options.direction.up);
+  const Mesh& own = model.mesh;
+  const Mesh turned = frame.is_the_models_own() ? Mesh{} : turned_upright(own, frame);
+  const Mesh& upright = frame.is_the_models_own() ? own : turned;
+  const double plate = plate_for(options, upright);
+
+  log.stage("overhangs");
+  const SurfaceIndex index(upright);
+  const Undersides undersides =
+      find_undersides(upright, index.winding(), rules, plate, column_spacing(upright, rules));
+  report.overhangs = {undersides.spacing, overhang_regions(undersides, rules)};
+  log.check_interrupted();
+
+  log.stage("supports");
+  Supports supports = make_standing(index, undersides, rules, report.shape, log);
+  Mesh body = std::move(supports.body);
+  report.body_volume = signed_volume(body);
+  if (options.foam && !body.triangles.empty()) {
+    FoamedBody foamed = options.foam(body, log);
+    body = std::move(foamed.mesh);
+    report.foam = foamed.words;
+  }
+  const std::size_t body_triangles = body.triangles.size();
+  const Mesh made = turned_back(joined(body, supports.teeth), frame);
+
+  log.stage("write");
+  const bool are_parts = options.parts_for != nullptr;
+  std::vector<ObjectPart> parts;
+  if (are_parts) {
+    std::vector<PartSetting> settings = options.parts_for->modifiers->support_settings;
+    if (options.extruder) settings.push_back({"extruder", fmt::format("{}", *options.extruder)});
+    report.part_settings = settings;
+    parts = support_parts(own.triangles.size(), made.triangles.size(), std::move(settings));
+    write_bytes(options.parts_for->modifiers->file(joined(own, made), parts.front(), parts.back(), ""),
+                pending.file());
+  } else {
+    write_mesh(made, pending.file(), format);
+  }
+  log.check_interrupted();
+  log.stage("check");
+  Mesh read = read_back(pending.file().path(), format, log);
+  if (are_parts) {
+    if (options.parts_for->modifiers->read(pending.file().path()) != parts)
+      throw FailureError(
+          "the result failed its check, so it was not kept: its parts are not the model and its supports",
+          "please report this with the model and the options");
+    require_same_triangles(read, joined(own, made), log);
+    read.triangles.erase(read.triangles.begin(),
+                         read.triangles.begin() + static_cast<std::ptrdiff_t>(own.triangles.size()));
+    drop_unused_vertices(read);
+  } else {
+    require_same_triangles(read, made, log);
+  }
+  report.facts =
+      check_supports(frame.is_the_models_own() ? read : turned_upright(read, frame), body_triangles, index,
+                     undersides, rules, report.shape, !report.foam.empty(), log);
+  if (report.facts.unsupported_area > kMostLeft)
+    refuse_unreached(report.facts, supports, rules, report.shape, frame);
+
+  if (report.facts.unsupported_area > 0) {
+    const Vec3d at = *report.facts.farthest_place;
+    const Vec3d place = frame.x * at.x + frame.y * at.y + frame.z * at.z;
+    log.notice(fmt::format(
+        "{:.1f} mm2 of overhangs have no room for teeth, among them near ({:.2f}, {:.2f}, {:.2f}) mm",
+        report.facts.unsupported_area, place.x, place.y, place.z));
+  }
+
+  report.input = model.input;
+  report.process = options.process;
+  report.direction = options.direction;
+  report.rules = rules;
+  report.tooth_count = supports.tooth_count;
+  report.foot_count = supports.foot_count;
+  report.tip_area = supports.tip_area;
+  report.strength = strength_of(options.process);
+  report.parts_for = options.parts_for;
+  report.output = options.output;
+  report.output_bytes = std::filesystem::file_size(pending.file().path());
+  log.check_interrupted();  // the last time that nothing is left behind
+  pending.file().commit();
+  report.stages = log.finish();
+  report.notices = log.notices();
+  return report;
+}
+
+}  // namespace aerate

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/monitor.h"
+#include "core/surface_index.h"
+#include "supports/teeth.h"
+#include "supports/undersides.h"
+
+namespace aerate {
+
+struct BodyShape {
+  double clearance = 0.8;     // between the body and the model, mm
+  double tooth_height = 1.2;  // between the body and the ceilings that its teeth reach to, mm
+  double foot = 2;            // half the width that it is not drawn in below, and its foot, mm
+};
+
+// The supports without their teeth: from below what they carry to the plate, or onto the model where that is in the way. On the way
+// down it is drawn in by 45 degrees, no further than `foot` and than what keeps it upright, and what is slender gets a wider foot.
+// Where bodies meet they are one. Empty where all is so low that teeth stand on the plate.
+//   model: that `undersides` are of
+Mesh support_body(const SurfaceIndex& model, const Undersides& undersides, const TeethPlan& teeth,
+                  const BodyShape& shape, Monitor& monitor);
+
+// The same as voxels: coordinates in columns, and in layers as high as a column is wide, from the plate up.
+std::vector<std::array<int, 3>> body_voxels(const Undersides& undersides, const TeethPlan& teeth,
+                                            const BodyShape& shape, Monitor& monitor);
+
+}  // namespace aerate

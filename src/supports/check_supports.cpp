@@ -1,0 +1,205 @@
+#include "supports/check_supports.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+#include <vector>
+
+#include "check/check_failure.h"
+#include "core/error.h"
+#include "core/facet_distance.h"
+#include "core/surface_index.h"
+#include "mesh/inspect.h"
+#include "mesh/topology.h"
+#include "printing/footing.h"
+
+namespace aerate {
+namespace {
+
+// Columns are told apart to half of one on each side.
+constexpr double kColumnsOff = 1.5;
+// What of supports' own underside may be held by nothing: corners that smoothing leaves, mm2.
+constexpr double kMostOwn = 10;
+// What voxels show of the clearance at features thinner than they.
+constexpr double kLeastClearance = 0.5;
+
+double least_distance(const Mesh& mesh, std::size_t first, std::size_t end, const SurfaceIndex& model,
+                      double limit) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(first, end), limit,
+      [&](const tbb::blocked_range<std::size_t>& range, double least) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          least = std::min(least, distance_to_surface(facet_of(mesh, mesh.triangles[i]), model.bvh(), least));
+        return least;
+      },
+      [](double a, double b) { return std::min(a, b); });
+}
+
+void require_sound(const Mesh& mesh, bool has_voids) {
+  const Inspection inspection = inspect(mesh);
+  if (!inspection.closed())
+    fail_check("{} of its edges are open and {} misoriented", inspection.open_edges,
+               inspection.misoriented_edges);
+  const auto inward =
+      std::ranges::count_if(inspection.shells, [](const Shell& shell) { return shell.volume <= 0; });
+  if (inward > 0 && !has_voids) fail_check("{} of its shells face inward", inward);
+}
+
+void require_above_plate(const Mesh& mesh, double plate) {
+  constexpr double kRounding = 1e-3;
+  for (const Vec3f& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !(static_cast<double>(p.z) >= plate - kRounding))
+      fail_check("it reaches below the plate, to ({:.2f}, {:.2f}, {:.2f}) mm", p.x, p.y, p.z);
+  }
+}
+
+void require_outside(const Mesh& mesh, std::span<const Triangle> triangles, const kernels::WindingView& model,
+                     const char* what) {
+  for (const Triangle& t : triangles) {
+    const Vec3d at = to_double(mesh.positions[t[0]]);
+    if (model.winding_number(at) != 0)
+      fail_check("{} is within the model at ({:.2f}, {:.2f}, {:.2f}) mm", what, at.x, at.y, at.z);
+  }
+}
+
+// Of the model at a place beside the middle of a column.
+double ceiling_near(const kernels::WindingView& model, double x, double y, double z, double nearest) {
+  double best = z;
+  for (const AirSpan& span : air_spans_at(model, x, y)) {
+    if (std::abs(span.ceiling - z) > nearest) continue;
+    best = span.ceiling;
+    nearest = std::abs(span.ceiling - z);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body, double plate) {
+  const Mesh alone = submesh(mesh, body);
+  const EdgeUses uses(alone);
+  const ShellLabels labels = label_shells(alone, uses);
+  std::vector<std::vector<Triangle>> shells(labels.count);
+  for (std::size_t i = 0; i < alone.triangles.size(); ++i)
+    shells[labels.of_triangle[i]].push_back(alone.triangles[i]);
+  std::optional<double> least;
+  for (const std::vector<Triangle>& triangles : shells) {
+    const Mesh shell = submesh(alone, triangles);
+    if (static_cast<double>(bounding_box(shell).lower.z) > plate + 0.01) continue;
+    const VolumeMoments moments = volume_moments(shell);
+    const auto margin = footing_margin(shell, moments.first_moment * (1 / moments.volume));
+    least = std::min(least.value_or(kInfinity), margin.value_or(-1));
+  }
+  return least;
+}
+
+void measure_contact(const kernels::WindingView& solid, const kernels::WindingView& model,
+                     const Undersides& columns, double within, double reach, SupportFacts& facts) {
+  constexpr int kSamples = 3;  // of a column, along each side
+  const std::size_t count = columns.spans.size();
+  std::vector<std::uint8_t> touched(count, 0);  // samples of each column
+  std::vector<std::uint8_t> is_held(count, 0);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    if (columns.hold[i] == Hold::none) return;
+    const Vec3d at = columns.place(static_cast<std::uint32_t>(i));
+    if (at.z <= columns.plate + within) return;
+    const auto is_near = [&](double x, double y) {
+      const double ceiling = ceiling_near(model, x, y, at.z, 2 * columns.spacing);
+      const std::vector<AirSpan> spans = air_spans_at(solid, x, y);
+      for (std::size_t k = 0; k + 1 < spans.size(); ++k) {
+        const double bottom = spans[k].ceiling, top = spans[k + 1].floor;
+        if (bottom < at.z && top >= ceiling - within) return true;
+      }
+      return false;
+    };
+    for (int sx = 0; sx < kSamples; ++sx) {
+      for (int sy = 0; sy < kSamples; ++sy) {
+        const double off_x = ((sx + 0.5) / kSamples - 0.5) * columns.spacing;
+        const double off_y = ((sy + 0.5) / kSamples - 0.5) * columns.spacing;
+        touched[i] = static_cast<std::uint8_t>(touched[i] + (is_near(at.x + off_x, at.y + off_y) ? 1 : 0));
+      }
+    }
+    is_held[i] = touched[i] > 0 ? 1 : 0;
+  });
+  std::vector<std::uint32_t> held;
+  facts.contact_area = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    facts.contact_area += columns.area() * touched[i] / (kSamples * kSamples);
+    if (is_held[i] != 0) held.push_back(i);
+  }
+  const std::vector<double> distances = distances_from_hold(columns, held);
+  facts.farthest = 0;
+  facts.farthest_place.reset();
+  facts.unsupported_area = 0;
+  const auto look_at = [&](std::uint32_t span, double distance) {
+    if (distance > reach + kColumnsOff * columns.spacing) facts.unsupported_area += columns.area();
+    if (distance <= facts.farthest) return;
+    facts.farthest = distance;
+    facts.farthest_place = columns.place(span);
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (columns.hold[i] == Hold::bridge) look_at(i, distances[i]);
+  }
+  for (const std::uint32_t tip : columns.tips) {
+    if (columns.hold[tip] != Hold::bridge) look_at(tip, distances[tip]);
+  }
+}
+
+SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, const SurfaceIndex& model,
+                            const Undersides& columns, const SupportRules& rules, const SupportShape& shape,
+                            bool has_voids, Monitor& monitor) {
+  require_sound(written, has_voids);
+  require_above_plate(written, columns.plate);
+  monitor.check_interrupted();
+  SupportFacts facts;
+  facts.triangle_count = written.triangles.size();
+  const auto body = std::span(written.triangles).first(body_triangles);
+  const auto teeth = std::span(written.triangles).subspan(body_triangles);
+  const double limit = 2 * shape.body.clearance;
+  if (!body.empty()) {
+    require_outside(written, body, model.winding(), "the body");
+    facts.volume = volume_moments(written, body, Vec3d{0, 0, columns.plate}).volume;
+    facts.body_distance = least_distance(written, 0, body_triangles, model, limit);
+    if (facts.body_distance < kLeastClearance * shape.body.clearance)
+      fail_check("the body is {:.3g} mm from the model, {:.3g} mm were asked for", facts.body_distance,
+                 shape.body.clearance);
+    facts.footing_margin = least_footing_margin(written, body, columns.plate);
+    // What is joined to the model and to the plate cannot tip.
+    if (shape.tooth.gap > 0 && facts.footing_margin && *facts.footing_margin < 0)
+      fail_check("a body tips over: its centre of mass is {:.2f} mm outside of its foot",
+                 -*facts.footing_margin);
+  }
+  monitor.check_interrupted();
+  if (shape.tooth.gap > 0) {
+    require_outside(written, teeth, model.winding(), "a tooth");
+    facts.tooth_distance =
+        least_distance(written, body_triangles, written.triangles.size(), model, 2 * shape.tooth.gap);
+    // Gaps are measured along up: across a slope they are narrower.
+    constexpr double kLeastShare = 0.3;
+    if (facts.tooth_distance < kLeastShare * shape.tooth.gap)
+      fail_check("a tooth is {:.3g} mm from the model, the gap is {:.3g} mm", facts.tooth_distance,
+                 shape.tooth.gap);
+  }
+  monitor.check_interrupted();
+  const kernels::HostWinding solid(written.positions, written.triangles);
+  measure_contact(solid.view(), model.winding(), columns, shape.tooth.gap + rules.layer / 2, rules.reach,
+                  facts);
+  if (has_voids) return facts;
+  const Undersides own = find_undersides(written, solid.view(), rules, columns.plate, columns.spacing);
+  SupportFacts of_own;
+  measure_contact(model.winding(), solid.view(), own, shape.tooth.gap + rules.layer / 2, rules.reach, of_own);
+  facts.own_unsupported_area = of_own.unsupported_area;
+  if (of_own.unsupported_area > kMostOwn) {
+    const Vec3d at = *of_own.farthest_place;
+    fail_check("{:.1f} mm2 of its own underside are held by nothing, near ({:.2f}, {:.2f}, {:.2f}) mm",
+               of_own.unsupported_area, at.x, at.y, at.z);
+  }
+  return facts;
+}
+
+}  // namespace aerate

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "supports/support_rules.h"
+#include "supports/undersides.h"
+
+namespace aerate {
+
+// Where supports touch what they hold.
+enum class ToothKind { ridge, cone };
+
+// Columns in a row under which a narrow ridge runs, along x or along y; one alone: a short one.
+struct RidgeRun {
+  std::vector<std::uint32_t> spans;
+  bool along_x = true;
+};
+
+struct TeethPlan {
+  ToothKind kind = ToothKind::ridge;
+  std::vector<std::uint32_t> held;  // spans with a tooth under their ceilings, ascending
+  std::vector<RidgeRun> runs;       // these as ridges, if that is what they are
+  std::vector<std::uint32_t>
+      carried;  // spans under whose ceilings there is a body, teeth among them; ascending
+};
+
+// Teeth so that no ceiling is farther from what holds it than the process's reach, and one under each place that begins in the
+// air. Ridges: in each overhang parallel ones no farther apart than twice the reach, the way and the phase that take the
+// least length, and under free edges; cones, and what ridges miss: always where it is farthest.
+TeethPlan plan_teeth(const Undersides& undersides, const SupportRules& rules, ToothKind kind);
+
+}  // namespace aerate

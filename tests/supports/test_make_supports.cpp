@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <utility>
+
+#include "core/error.h"
+#include "core/facet_distance.h"
+#include "core/monitor.h"
+#include "core/surface_index.h"
+#include "files/load.h"
+#include "mesh/inspect.h"
+#include "supports/check_supports.h"
+#include "supports/make_supports.h"
+#include "tests/support/caught.h"
+#include "tests/support/shapes.h"
+
+namespace aerate::test {
+namespace {
+
+// A model with its supports, made as the pipeline makes them.
+struct Supported {
+  explicit Supported(Mesh mesh, const char* process = "fdm", double plate = 0)
+      : model(std::move(mesh)),
+        index(model),
+        rules(*support_rules(*find_process(process))),
+        shape(usual_shape(rules)),
+        undersides(find_undersides(model, index.winding(), rules, plate, column_spacing(model, rules))) {}
+
+  void make() { supports = make_supports(index, undersides, rules, shape, monitor); }
+  Mesh mesh() const { return joined(supports.body, supports.teeth); }
+  SupportFacts check(const Mesh& written) {
+    return check_supports(written, supports.body.triangles.size(), index, undersides, rules, shape, false,
+                          monitor);
+  }
+
+  Mesh model;
+  SurfaceIndex index;
+  SupportRules rules;
+  SupportShape shape;
+  Undersides undersides;
+  Monitor monitor;
+  Supports supports;
+};
+
+// A stem with a beam across, 25 mm to either side.
+Mesh tee() {
+  return join(make_box({25, 0, 0}, {35, 20, 30}), make_box({0, 0, 30}, {60, 20, 36}));
+}
+
+// An arm over a foot of the model.
+Mesh shelf() {
+  Mesh mesh = join(make_box({0, 0, 0}, {50, 20, 8}), make_box({0, 0, 8}, {10, 20, 36}));
+  return join(mesh, make_box({10, 0, 30}, {50, 20, 36}));
+}
+
+TEST(MakeSupports, RidgesLeaveNoCeilingFarFromThem) {
+  Supported made(tee());
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_LE(facts.farthest, made.rules.reach + 1.5 * made.undersides.spacing);
+  EXPECT_EQ(facts.unsupported_area, 0);
+  // A tenth to a fifth of the 1000 mm2 touch.
+  EXPECT_GT(facts.contact_area, 60);
+  EXPECT_LT(facts.contact_area, 200);
+  EXPECT_NEAR(facts.tooth_distance, made.shape.tooth.gap, 0.01);
+  EXPECT_GT(facts.body_distance, 0.75);
+  ASSERT_TRUE(facts.footing_margin);
+  EXPECT_GT(*facts.footing_margin, 1);
+}
+
+TEST(MakeSupports, AreClosedAndStandOnThePlate) {
+  Supported made(tee());
+  made.make();
+  const Inspection inspection = inspect(made.mesh());
+  EXPECT_TRUE(inspection.closed());
+  EXPECT_EQ(inspection.non_manifold_edges, 0U);
+  for (const Shell& shell : inspection.shells) EXPECT_GT(shell.volume, 0);
+  const Box3f box = bounding_box(made.mesh());
+  EXPECT_EQ(box.lower.z, 0);
+  EXPECT_NEAR(static_cast<double>(box.upper.z), 30 - 0.2, 1e-4);
+  // Drawn in: less than what a body straight down would take.
+  EXPECT_LT(signed_volume(made.supports.body), 0.5 * 50 * 20 * 29);
+}
+
+TEST(MakeSupports, TakeTheGivenPlate) {
+  Supported made(tee(), "fdm", -5);
+  made.make();
+  EXPECT_EQ(bounding_box(made.mesh()).lower.z, -5);
+}
+
+TEST(MakeSupports, StandOnTheModelWhereThePlateIsOutOfReach) {
+  Supported made(shelf());
+  made.make();
+  EXPECT_GT(made.supports.foot_count, 2U);
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_EQ(facts.unsupported_area, 0);
+  EXPECT_NEAR(static_cast<double>(bounding_box(made.mesh()).lower.z), 8.2, 1e-4);
+}
+
+TEST(MakeSupports, ConesAreJoinedToTheModel) {
+  for (const char* process : {"sla", "metal"}) {
+    Supported made(tee(), process);
+    made.make();
+    const SupportFacts facts = made.check(made.mesh());
+    EXPECT_EQ(facts.unsupported_area, 0);
+    EXPECT_LE(facts.farthest, 1 + 1.5 * made.undersides.spacing);
+    // They reach into the model by a tenth.
+    EXPECT_NEAR(static_cast<double>(bounding_box(made.mesh()).upper.z), 30.1, 1e-4);
+    EXPECT_GT(made.supports.tooth_count, 200U);
+    EXPECT_NEAR(made.supports.tip_area, made.supports.tooth_count * 3.1416 * 0.04, 1);
+  }
+}
+
+TEST(MakeSupports, FineVoxelsKeepTheClearanceAboveAFloor) {
+  Supported made(shelf(), "metal");
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_GT(facts.body_distance, 0.7);
+  EXPECT_EQ(facts.own_unsupported_area.value_or(-1), 0);
+}
+
+TEST(MakeSupports, APointThatBeginsInTheAirGetsATooth) {
+  Mesh spike;
+  spike.positions = {{20, 5, 5}, {15, 0, 15}, {25, 0, 15}, {25, 10, 15}, {15, 10, 15}};
+  spike.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}};
+  Mesh mesh = join(make_box({0, 0, 0}, {10, 10, 20}), make_box({10, 0, 15}, {25, 10, 20}));
+  Supported made(join(mesh, spike));
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_LT(facts.unsupported_area, 0.5);
+  const kernels::HostWinding solid(made.supports.teeth.positions, made.supports.teeth.triangles);
+  // Under the column that is lowest.
+  bool is_there = false;
+  for (const double x : {-0.3, -0.15, 0.0, 0.15, 0.3})
+    for (const double y : {-0.3, -0.15, 0.0, 0.15, 0.3})
+      is_there = is_there || solid.view().winding_number({20 + x, 5 + y, 4.6}) != 0;
+  EXPECT_TRUE(is_there);
+}
+
+TEST(MakeSupports, TheBunnyUpsideDownStandsOnThePlate) {
+  // Feet of its body reach past the model.
+  Monitor monitor;
+  Mesh bunny = load_model(std::filesystem::path(AERATE_SAMPLES) / "bunny.stl").mesh;
+  Mesh turned = bunny;
+  for (Vec3f& p : turned.positions) p = {p.x, -p.y, -p.z};
+  const float low = bounding_box(turned).lower.z;
+  for (Vec3f& p : turned.positions) p.z -= low;
+  Supported made(turned);
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_LT(facts.unsupported_area, 2);
+  EXPECT_GE(bounding_box(made.mesh()).lower.z, -1e-4F);
+}
+
+TEST(MakeSupports, NothingToDoIsSaid) {
+  Supported made(make_box({0, 0, 0}, {20, 20, 20}));
+  EXPECT_TRUE(contains(message_of<NothingToRemoveError>([&] { made.make(); }), "nothing needs supports"));
+}
+
+TEST(MakeSupports, AreTheSameEveryTime) {
+  Supported a(tee()), b(tee());
+  a.make();
+  b.make();
+  EXPECT_EQ(a.mesh().positions, b.mesh().positions);
+  EXPECT_EQ(a.mesh().triangles, b.mesh().triangles);
+}
+
+class CheckSupports : public testing::Test {
+ protected:
+  CheckSupports() { made.make(); }
+
+  std::string refusal(const Mesh& written) {
+    return message_of<FailureError>([&] { static_cast<void>(made.check(written)); });
+  }
+
+  Supported made{tee()};
+};
+
+TEST_F(CheckSupports, RefuseOpenOnes) {
+  Mesh open = made.mesh();
+  open.triangles.pop_back();
+  EXPECT_TRUE(contains(refusal(open), "edges are open"));
+}
+
+TEST_F(CheckSupports, RefuseTurnedOnes) {
+  Mesh turned = made.mesh();
+  for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
+  EXPECT_TRUE(contains(refusal(turned), "face inward"));
+}
+
+TEST_F(CheckSupports, RefuseOnesBelowThePlate) {
+  Mesh low = made.mesh();
+  for (Vec3f& p : low.positions) p.z -= 1;
+  EXPECT_TRUE(contains(refusal(low), "below the plate"));
+}
+
+TEST_F(CheckSupports, RefuseABodyThatIsTooNear) {
+  Mesh near = made.mesh();
+  for (Vec3f& p : near.positions) p.z += 0.7F;
+  EXPECT_TRUE(contains(refusal(near), "from the model"));
+}
+
+TEST_F(CheckSupports, RefuseTeethThatTouch) {
+  Mesh touching = made.mesh();
+  for (std::size_t i = made.supports.body.positions.size(); i < touching.positions.size(); ++i)
+    touching.positions[i].z += 0.18F;
+  EXPECT_TRUE(contains(refusal(touching), "a tooth is"));
+}
+
+TEST_F(CheckSupports, SeeWhatIsNotHeld) {
+  const Mesh body_alone = made.supports.body;
+  const SupportFacts facts = made.check(body_alone);
+  EXPECT_GT(facts.unsupported_area, 700);
+  EXPECT_EQ(facts.contact_area, 0);
+  EXPECT_GT(facts.farthest, 20);
+}
+
+TEST_F(CheckSupports, RefuseABodyThatHangs) {
+  Mesh hanging = made.mesh();
+  for (Vec3f& p : hanging.positions) p.z = std::max(p.z, 20.0F);  // its lower half is gone
+  made.supports.body.positions.clear();
+  EXPECT_TRUE(contains(refusal(hanging), "held by nothing"));
+}
+
+TEST_F(CheckSupports, RefuseABodyThatTipsOver) {
+  // On a foot that is not under it.
+  Mesh leaning = made.supports.body;
+  for (Vec3f& p : leaning.positions) p.y -= p.z * 3;
+  made.supports.body = leaning;
+  EXPECT_TRUE(contains(refusal(leaning), "tips over"));
+}
+
+}  // namespace
+}  // namespace aerate::test
