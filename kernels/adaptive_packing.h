@@ -182,21 +182,12 @@ class AdaptivePacker {
     while (true) {
       if (threshold_ < least_radius_) threshold_ = least_radius_;
       if (largest < kRebuildRatio * grid_.reach()) rebuild_grids(largest);
-      place_level();
-      if (done_) return;
+      while (place_round()) {
+        if (done_) return;
+      }
       if (threshold_ <= least_radius_ || threshold_ < 1e-7 * half_extent) break;
       largest = threshold_;
       threshold_ *= kLevelRatio;
-    }
-  }
-
-  // What is missed by one round has its turn at the next level, whose largest it then is; of few balls none
-  // is to wait.
-  void place_level() {
-    constexpr std::size_t kFewBalls = 1000;
-    while (place_round()) {
-      if (done_) return;
-      if (balls_.size() >= kFewBalls && threshold_ > least_radius_) return;
     }
   }
 

@@ -182,7 +182,7 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
   constexpr double kAlike = 0.02;  // of the least value: four constraints that are equal for a step's purpose
   // A region without a maximum of the least value is left at once where none is near to it. Else one step more
   // makes the bound tighter, for which the region will not be searched again as soon.
-  constexpr double kNear = 0.85;
+  constexpr double kNear = 0.93;
   constexpr int kMostStepsBelow = 1;
   Vec3d p = anchor.point;
   LocalMaximum best{p, -kInfinity, limits.most};

@@ -269,9 +269,10 @@ class BallGrid {
     // Balls of about the same size are entered together.
     if (groups_.empty() || largest < 0.5 * groups_.back().largest) groups_.push_back({first, largest});
     groups_.back().largest = max_of(groups_.back().largest, largest);
-    link(first, balls.size, largest);
     // To list them all again costs about as much as to have linked a fifth of them.
-    if (entries_.size() > kFew && entries_.size() > view_.listed.size / 5) list_all();
+    const bool are_many = balls.size - first > kFew && balls.size - first > first / 5;
+    if (!are_many) link(first, balls.size, largest);
+    if (are_many || (entries_.size() > kFew && entries_.size() > view_.listed.size / 5)) list_all();
   }
 
  private:
@@ -294,7 +295,7 @@ class BallGrid {
     return static_cast<std::uint32_t>(min_of(across + 3, view_.cells.count_z * 1.0));
   }
 
-  // Lists the balls that have been entered so far, cell by cell; none are linked then.
+  // Lists the balls that are known so far, cell by cell; none are linked then.
   void list_all() {
     using namespace ball_grid_detail;
     const std::size_t count = view_.heads.size;
@@ -311,8 +312,8 @@ class BallGrid {
     executor_.for_each_index(
         1, SetAll<std::uint32_t>{{starts_.view().data + count, 1}, static_cast<std::uint32_t>(total)});
     view_.starts = {starts_.view().data, count + 1};
-    listed_.clear();
-    listed_.resize(executor_, static_cast<std::size_t>(total));
+    listed_ = {};
+    listed_ = executor_.template allocate<std::uint32_t>(static_cast<std::size_t>(total));
     for_each_layer(EnterPass::list, remaining.view());
     view_.listed = listed_.view();
   }
@@ -370,8 +371,8 @@ class BallGrid {
   BallGridView<Shape> view_;
   std::size_t most_at_a_time_ = 1;
   std::vector<Group> groups_;
-  typename Executor::template Buffer<std::uint32_t> heads_, starts_, entry_count_;
-  GrowingBuffer<Executor, std::uint32_t> first_entries_, listed_;
+  typename Executor::template Buffer<std::uint32_t> heads_, starts_, listed_, entry_count_;
+  GrowingBuffer<Executor, std::uint32_t> first_entries_;
   GrowingBuffer<Executor, BallEntry> entries_;
 };
 
