@@ -95,10 +95,6 @@ class FourConstraints {
   AERATE_HD double greatest() const {
     return max_of(max_of(value_[0], value_[1]), max_of(value_[2], value_[3]));
   }
-  // How far the four are from being equal.
-  AERATE_HD double spread() const {
-    return greatest() - min_of(min_of(value_[0], value_[1]), min_of(value_[2], value_[3]));
-  }
   AERATE_HD bool any_artificial() const {
     return artificial_[0] || artificial_[1] || artificial_[2] || artificial_[3];
   }
@@ -179,7 +175,6 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
                                                  double extent, const RefineLimits& limits) {
   constexpr int kMostSteps = 48;
   constexpr int kMostRestarts = 2;
-  constexpr double kAlike = 0.02;  // of the least value: four constraints that are equal for a step's purpose
   // A region without a maximum of the least value is left at once where none is near to it. Else one step more
   // makes the bound tighter, for which the region will not be searched again as soon.
   constexpr double kNear = 0.93;
@@ -202,11 +197,11 @@ AERATE_HD inline LocalMaximum find_local_maximum(const FieldView<Shape>& field, 
     for (int k = 0; k < 2; ++k) {
       if (!four.solve()) return best;
       Vec3d step = four.step();
-      const double walked_squared = length_squared(step);
-      if (walked_squared > 4 * extent * extent) step = step * (2 * extent / std::sqrt(walked_squared));
+      const double walked = length(step);
+      if (walked > 2 * extent) step = step * (2 * extent / walked);
       p = p + step;
       four.move_to(p);
-      if (four.spread() < kAlike * limits.least) break;
+      if (walked < 1e-3 * extent) break;
     }
     const double model = four.greatest();
     if (model < limits.least) {

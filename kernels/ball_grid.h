@@ -122,7 +122,7 @@ struct ReorderBalls {
 
 // What is done with the cells that balls are entered in. Balls that are linked take two passes, those that
 // are listed the others; cells that lie wholly in a ball have to be known before.
-enum class EnterPass { mark_inside_and_count, link, mark_inside, count_by_cell, list };
+enum class EnterPass { mark_inside_and_count, link, mark_inside_and_count_by_cell, list };
 
 // Enters one layer of cells along z of a ball: the unit of work, so that a large ball is not one thread's.
 template <typename Shape>
@@ -152,12 +152,12 @@ struct EnterLayer {
       for (std::uint32_t x = range.x0; x <= range.x1; ++x) {
         const AxisDistances dx(ball.centre.x, grid.cells.origin.x, grid.cells.cell_size, x);
         const double nearest_squared = dx.nearest_squared + dy.nearest_squared + dz.nearest_squared;
+        const bool inside = dx.farthest_squared + dy.farthest_squared + dz.farthest_squared <= inner * inner;
         const Vec3d middle = grid.cells.origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * grid.cells.cell_size;
-        if (!grid.shape.may_touch(ball, grid.gap, grid.reach, nearest_squared, middle,
-                                  grid.cells.cell_size)) {
+        if (!inside && !grid.shape.may_touch(ball, grid.gap, grid.reach, nearest_squared, middle,
+                                             grid.cells.cell_size)) {
           continue;
         }
-        const bool inside = dx.farthest_squared + dy.farthest_squared + dz.farthest_squared <= inner * inner;
         enter(id, grid.cells.index(x, y, z), inside, entry);
       }
     }
@@ -168,13 +168,12 @@ struct EnterLayer {
   // `entry`: the layer's entries so far, or the next of them.
   AERATE_HD void enter(std::uint32_t id, std::size_t cell, bool inside, std::uint32_t& entry) const {
     if (inside) {
-      const bool marks = pass == EnterPass::mark_inside_and_count || pass == EnterPass::mark_inside;
+      const bool marks =
+          pass == EnterPass::mark_inside_and_count || pass == EnterPass::mark_inside_and_count_by_cell;
       if (marks) grid.heads[cell] = BallGridView<Shape>::kInsideBit | id;
       return;
     }
     switch (pass) {
-      case EnterPass::mark_inside:
-        return;
       case EnterPass::mark_inside_and_count:
         ++entry;
         return;
@@ -186,8 +185,8 @@ struct EnterLayer {
         ++entry;
         return;
       }
-      case EnterPass::count_by_cell:
-        if (grid.heads[cell] == kNone) atomic_add(remaining[cell], 1);
+      case EnterPass::mark_inside_and_count_by_cell:
+        atomic_add(remaining[cell], 1);
         return;
       case EnterPass::list:
         if (grid.heads[cell] != kNone) return;
@@ -195,6 +194,16 @@ struct EnterLayer {
         listed[grid.starts[cell] + atomic_add(remaining[cell], ~std::uint32_t{0}) - 1] = id;
         return;
     }
+  }
+};
+
+// A cell that lies wholly in a ball lists none.
+struct ListNoneWithin {
+  View<const std::uint32_t> heads;
+  View<std::uint32_t> remaining;
+
+  AERATE_HD void operator()(std::size_t cell) const {
+    if (heads[cell] != kNone) remaining[cell] = 0;
   }
 };
 
@@ -269,10 +278,16 @@ class BallGrid {
     // Balls of about the same size are entered together.
     if (groups_.empty() || largest < 0.5 * groups_.back().largest) groups_.push_back({first, largest});
     groups_.back().largest = max_of(groups_.back().largest, largest);
-    // To list them all again costs about as much as to have linked a fifth of them.
-    const bool are_many = balls.size - first > kFew && balls.size - first > first / 5;
+    // They are listed again where the linked ones are many, and were as much work as all others are: large balls in
+    // small cells are.
+    linked_work_ += work_of(balls.size - first, largest);
+    double work = 0;
+    for (std::size_t k = 0; k < groups_.size(); ++k)
+      work += work_of(end_of(k) - groups_[k].first, groups_[k].largest);
+    const bool pays = 4 * linked_work_ > work;
+    const bool are_many = pays && balls.size - first > kFew && balls.size - first > first / 5;
     if (!are_many) link(first, balls.size, largest);
-    if (are_many || (entries_.size() > kFew && entries_.size() > view_.listed.size / 5)) list_all();
+    if (are_many || (pays && entries_.size() > kFew && entries_.size() > view_.listed.size / 5)) list_all();
   }
 
  private:
@@ -286,6 +301,16 @@ class BallGrid {
     constexpr std::size_t kMost = std::size_t{1} << 25;
     const std::size_t fitting = executor_.free_bytes() / 8 / sizeof(std::uint32_t);
     return static_cast<double>(max_of(min_of(fitting, kMost), std::size_t{1024}));
+  }
+
+  std::size_t end_of(std::size_t group) const {
+    return group + 1 < groups_.size() ? groups_[group + 1].first : view_.balls.size;
+  }
+
+  // Cells that are looked at, about.
+  double work_of(std::size_t count, double largest) const {
+    const double layers = layers_of(largest);
+    return static_cast<double>(count) * layers * layers * layers;
   }
 
   // At most so many layers of cells along z has a ball no larger than `largest`.
@@ -304,8 +329,8 @@ class BallGrid {
     entries_.clear();
     auto remaining = executor_.template allocate<std::uint32_t>(count);
     executor_.for_each_index(count, SetAll<std::uint32_t>{remaining.view(), 0});
-    for_each_layer(EnterPass::mark_inside, remaining.view());
-    for_each_layer(EnterPass::count_by_cell, remaining.view());
+    for_each_layer(EnterPass::mark_inside_and_count_by_cell, remaining.view());
+    executor_.for_each_index(count, ListNoneWithin{view_.heads, remaining.view()});
     const std::uint64_t total =
         executor_.exclusive_scan(View<const std::uint32_t>(remaining.view()), {starts_.view().data, count});
     require_fewer_than_bits(total);
@@ -316,11 +341,12 @@ class BallGrid {
     listed_ = executor_.template allocate<std::uint32_t>(static_cast<std::size_t>(total));
     for_each_layer(EnterPass::list, remaining.view());
     view_.listed = listed_.view();
+    linked_work_ = 0;
   }
 
   void for_each_layer(ball_grid_detail::EnterPass pass, View<std::uint32_t> remaining) {
     for (std::size_t k = 0; k < groups_.size(); ++k) {
-      const std::size_t last = k + 1 < groups_.size() ? groups_[k + 1].first : view_.balls.size;
+      const std::size_t last = end_of(k);
       const std::uint32_t layers = layers_of(groups_[k].largest);
       executor_.for_each_index(
           (last - groups_[k].first) * layers,
@@ -371,6 +397,7 @@ class BallGrid {
   BallGridView<Shape> view_;
   std::size_t most_at_a_time_ = 1;
   std::vector<Group> groups_;
+  double linked_work_ = 0;  // since all were listed
   typename Executor::template Buffer<std::uint32_t> heads_, starts_, listed_, entry_count_;
   GrowingBuffer<Executor, std::uint32_t> first_entries_;
   GrowingBuffer<Executor, BallEntry> entries_;

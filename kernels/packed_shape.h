@@ -101,9 +101,14 @@ struct RoofedShape {
     return box;
   }
   // Clearances change by no more than the way from the cell's middle.
-  AERATE_HD bool may_touch(const Ball& ball, double gap, double reach, double /*nearest_squared*/,
-                           Vec3d middle, double cell_size) const {
+  AERATE_HD bool may_touch(const Ball& ball, double gap, double reach, double nearest_squared, Vec3d middle,
+                           double cell_size) const {
     constexpr double kHalfDiagonal = 0.86602540378443865 * (1 + 1e-9);
+    // The own roof is above the ball, and roofs of others are below it: the ball alone is beside the rest.
+    const double height = dot(middle - ball.centre, roof.up), half = kHalfDiagonal * cell_size;
+    const bool has_roofs = height > -half ? roof.shapes(ball.radius) : false;
+    if (!has_roofs && !(height < half && roof.shapes(reach)))
+      return BallShape{}.may_touch(ball, gap, reach, nearest_squared, middle, cell_size);
     const double radius = kernels::radius_beside(roof, middle, ball.centre, ball.radius, gap).value;
     return radius - kHalfDiagonal * cell_size <= reach;
   }
