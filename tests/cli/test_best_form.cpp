@@ -76,7 +76,7 @@ TEST(BestForm, HasLargerCellsWhereThatSavesHoles) {
 // Two cells of one group, whose pools take a third hole.
 TEST(BestForm, HasLargerCellsWherePoolsTakeHoles) {
   const Job job;
-  const std::string box = job.input("box.stl", make_box({0, 0, 0}, {64, 40, 20}));
+  const std::string box = job.input("box.stl", make_box({0, 0, 0}, {70, 40, 20}));
   const Json usual = report_of(job.hollow(box, {"--process", "sla", "--cell-size", "33"}));
   EXPECT_EQ(usual["drainage"]["networks"], 1);
   EXPECT_GT(usual["drainage"]["holes"].size(), 2U);

@@ -411,15 +411,15 @@ TEST_F(PlanDrainage, LittleStaysInAPlateAndEachGroupHasTwoHoles) {
   for (std::uint32_t i = 0; i < planned.kept.size(); ++i) EXPECT_TRUE(networks.contains(sets.root(i)));
 }
 
-// Where channels out of dropped branches were still to be kept clear of, 68 voids would be left.
+// Where channels out of dropped branches were still to be kept clear of, 40 voids would be left.
 TEST_F(PlanDrainage, WhatWasLeftOutDoesNotStandInTheWay) {
-  mesh_ = test::make_box({0, 0, 0}, {105, 100, 20});
+  mesh_ = test::make_box({0, 0, 0}, {110, 100, 22});
   Monitor silent;
   const Roof roof = make_roof({.degrees = 45, .bridge = 2, .up = kUp});
   const PackingLimits limits{.wall = 1, .gap = 1, .min_radius = 3, .max_radius = 8, .roof = roof};
   packing_ = pack_adaptive(mesh_, limits, {}, silent);
   request_ = {.channel_radius = 1.4, .hole_radius = 2.5, .escape_holes = {}};
-  EXPECT_GE(plan().kept.size(), 72U);
+  EXPECT_GE(plan().kept.size(), 55U);
 }
 
 TEST_F(PlanDrainage, DoesNotOpenIntoACavityOfTheModel) {
