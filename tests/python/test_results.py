@@ -59,8 +59,8 @@ def test_modifiers_need_a_file_and_are_written(fresh):
 
 
 def test_pack_makes_the_spheres_of_the_program(fresh):
-    expected = run_program("pack", BUNNY, "-o", "expected.csv", "--min-radius", 0.7, "--max-voids", 40)
-    packing = aerate.pack(BUNNY, min_radius=0.7, max_voids=40)
+    expected = run_program("pack", BUNNY, "-o", "expected.csv", "--min-radius", 0.5, "--max-voids", 40)
+    packing = aerate.pack(BUNNY, min_radius=0.5, max_voids=40)
     with open("expected.csv") as table:
         rows = [[float(row[name]) for name in ("x", "y", "z", "radius")] for row in csv.DictReader(table)]
     assert packing.centres.shape == (40, 3) and packing.radii.shape == (40,)
