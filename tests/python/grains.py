@@ -8,7 +8,7 @@ from conftest import BUNNY, run_program
 
 def packed(folder):
     """The same 50 spheres as a table: (x, y, z, radius), and their kinds."""
-    run_program("pack", BUNNY, "-o", folder / "table.csv", "--max-voids", 50)
+    run_program("pack", BUNNY, "-o", folder / "table.csv", "--min-radius", 0.5, "--max-voids", 50)
     with open(folder / "table.csv") as table:
         rows = list(csv.DictReader(table))
     numbers = [[float(row[name]) for name in ("x", "y", "z", "radius")] for row in rows]

@@ -20,7 +20,7 @@ write_dump all custom read.txt id type diameter mass x y z modify sort id format
 @pytest.mark.skipif(shutil.which("lmp") is None, reason="lammps is not installed")
 def test_lammps_reads_places_diameters_and_the_box(fresh):
     spheres, _ = packed(fresh)
-    report = run_program("pack", BUNNY, "-o", "packing.data", "--max-voids", 50)
+    report = run_program("pack", BUNNY, "-o", "packing.data", "--min-radius", 0.5, "--max-voids", 50)
     (fresh / "script").write_text(SCRIPT)
     done = subprocess.run(["lmp", "-in", "script", "-log", "none"], capture_output=True, text=True)
     reading = done.stdout.partition("read_data CPU")[0]
@@ -40,7 +40,7 @@ def test_lammps_reads_places_diameters_and_the_box(fresh):
 @pytest.mark.skipif(shutil.which("lmp") is None, reason="lammps is not installed")
 def test_the_script_of_the_docs_gives_a_density(fresh):
     spheres, _ = packed(fresh)
-    run_program("pack", BUNNY, "-o", "packing.data", "--max-voids", 50)
+    run_program("pack", BUNNY, "-o", "packing.data", "--min-radius", 0.5, "--max-voids", 50)
     text = (ROOT / "docs/packing.md").read_text()
     block = text[text.index("    units lj"):].partition("\n\n")[0]
     assert "set type 1 density 0.0026" in block

@@ -12,7 +12,7 @@ def test_vtk_reads_points_radii_kinds_and_unit(fresh):
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     spheres, kinds = packed(fresh)
-    run_program("pack", BUNNY, "-o", "packing.vtp", "--max-voids", 50)
+    run_program("pack", BUNNY, "-o", "packing.vtp", "--min-radius", 0.5, "--max-voids", 50)
     reader = vtk_xml.vtkXMLPolyDataReader()
     reader.SetFileName("packing.vtp")
     failures = []

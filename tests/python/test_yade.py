@@ -25,7 +25,7 @@ with open("scaled.txt", "w") as file:
 @pytest.mark.skipif(shutil.which("yade") is None, reason="yade is not installed")
 def test_yade_reads_places_and_radii(fresh):
     spheres, _ = packed(fresh)
-    run_program("pack", BUNNY, "-o", "packing.txt", "--max-voids", 50)
+    run_program("pack", BUNNY, "-o", "packing.txt", "--min-radius", 0.5, "--max-voids", 50)
     (fresh / "script.py").write_text(SCRIPT)
     done = subprocess.run(["yade", "-n", "-x", "script.py"], capture_output=True, text=True, timeout=120)
     assert (fresh / "scaled.txt").exists(), done.stdout + done.stderr
@@ -35,6 +35,6 @@ def test_yade_reads_places_and_radii(fresh):
 
 def test_it_is_a_table_for_numpy_too(fresh):
     spheres, _ = packed(fresh)
-    run_program("pack", BUNNY, "-o", "packing.txt", "--max-voids", 50)
+    run_program("pack", BUNNY, "-o", "packing.txt", "--min-radius", 0.5, "--max-voids", 50)
     assert np.array_equal(np.loadtxt("packing.txt"), spheres)
     assert "lengths in mm" in (fresh / "packing.txt").read_text()
