@@ -229,6 +229,8 @@ class CellTree {
   CellTree(const Executor& executor, Paced<Executor>& paced) : executor_(executor), paced_(paced) {}
 
   CellsView view() { return {cells_.view(), bounds_.view(), root_half_diagonal_}; }
+  // How often cells were given new numbers.
+  std::size_t tidied() const { return tidied_; }
 
   // Covers the box; nothing is placed yet.
   //   most_at_a_time: cells and children that are worked on at a time; at least 8
@@ -326,6 +328,7 @@ class CellTree {
       kept += total.first;
     });
     resize(kept);
+    ++tidied_;
   }
 
   const Executor& executor_;
@@ -333,6 +336,7 @@ class CellTree {
   std::size_t most_at_a_time_ = 8;
   double root_half_diagonal_ = 0;
   std::size_t useful_ = 0;  // cells, when they were last counted
+  std::size_t tidied_ = 0;
   GrowingBuffer<Executor, Cell> cells_, parents_, next_parents_;
   GrowingBuffer<Executor, double> bounds_;
   GrowingBuffer<Executor, cell_tree_detail::CellFate> fates_;

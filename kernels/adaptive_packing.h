@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,7 @@
 
 #include "kernels/adaptive_cells.h"
 #include "kernels/adaptive_field.h"
+#include "kernels/adaptive_idle.h"
 #include "kernels/adaptive_lattice.h"
 #include "kernels/adaptive_refine.h"
 #include "kernels/adaptive_selection.h"
@@ -47,15 +49,17 @@ struct AdaptiveParameters {
 struct AdaptiveInput : PackerInput {
   double volume = 0;  // mm3, of the solid
   AdaptiveParameters parameters{};
-  // Cells, searches and places that are worked on at a time; fewer if memory asks for it. The result does not
-  // depend on it.
+  // Packs in the ways of `kBestAttempts` as well, and keeps the most volume.
+  bool searches_more = false;
+  // Cells, searches and places that are worked on at a time; fewer if memory asks for it, or where fewer keep
+  // the executor busy. The result does not depend on it.
   std::size_t most_at_a_time = std::size_t{1} << 20;
 };
 
 struct AdaptiveResult {
   std::vector<Ball> balls;        // in the order they were placed
   std::size_t lattice_count = 0;  // so many of the first stand on a lattice
-  std::size_t search_count = 0;   // searches for a local maximum
+  std::size_t search_count = 0;   // searches for a local maximum, of all attempts
   std::size_t index_bytes = 0;
   std::size_t most_at_a_time = 0;
 };
@@ -78,7 +82,7 @@ struct Search {
     const LocalMaximum maximum = find_local_maximum(field, cell.anchor(), cells.half_diagonal(id), limits);
     found[i] = maximum.value >= limits.least ? 1 : 0;
     if (found[i] != 0) {
-      candidates[i] = {maximum.point, maximum.value - shrink, maximum.value};
+      candidates[i] = {maximum.point, maximum.value - shrink};
       cells.bounds[id] = maximum.value;
     } else {
       // Asleep until the threshold falls; at most until the next level.
@@ -87,11 +91,13 @@ struct Search {
   }
 };
 
-// Appends what was found, ready to be ranked.
+// Appends what was found, ready to be ranked: by value, and what settles by how far along the pull it is.
 struct ListFound {
   View<const Candidate> searched;
   View<const std::uint8_t> found;
   std::size_t first;
+  bool settles;
+  Vec3d pull;
   View<Candidate> candidates;
   View<std::uint64_t> keys;
   View<std::uint32_t> order;
@@ -100,7 +106,7 @@ struct ListFound {
     if (found[i] == 0) return;
     const std::size_t to = first + before.first;
     candidates[to] = searched[i];
-    keys[to] = rank_key(searched[i]);
+    keys[to] = rank_key(settles ? dot(searched[i].point, pull) : searched[i].value);
     order[to] = static_cast<std::uint32_t>(to);
   }
 };
@@ -112,24 +118,63 @@ inline std::size_t elements_at_a_time(std::size_t free_bytes, std::size_t most) 
   return max_of(min_of(free_bytes / 4 / kBytes, most), kLeast);
 }
 
+// One way to pack.
+struct Attempt {
+  double share_of_largest = kInfinity;  // the largest radius, to that of the largest ball that fits
+  double first_cell = 2.2;  // half diagonal of the first balls' cells, to the level's least radius
+};
+
+// The largest ball that fits is not always in the densest packing, and finer cells miss fewer places
+// (docs/packing.md has what each brings).
+constexpr std::array<Attempt, 5> kBestAttempts{
+    {{kInfinity, 1.0}, {0.95, 1.0}, {0.925, 1.0}, {0.9, 1.0}, {0.875, 1.0}}};
+
+// What distances to the model and winding numbers are asked of. The winding numbers' index is made of the
+// hierarchy's own facets, so that they are in memory once.
+template <typename Executor>
+struct AdaptiveIndex {
+  TriangleBvh<Executor> bvh;
+  WindingIndex<Executor> winding;
+
+  AdaptiveIndex(const Executor& executor, const AdaptiveInput& input) {
+    {
+      const auto facets = gather_facets(executor, input.positions, input.triangles);
+      input.progress(0);
+      bvh = build_triangle_bvh(executor, facets.view(), input.box);
+    }
+    input.progress(0);
+    winding = build_winding_index(executor, bvh.view.facets, input.box);
+    input.progress(0);
+  }
+
+  std::size_t bytes() const { return bvh.bytes() + winding.cells.bytes(); }
+};
+
 }  // namespace adaptive_detail
 
+// One packing.
 template <typename Executor, typename Shape>
 class AdaptivePacker {
  public:
-  // The executor and the input stay with the caller.
-  AdaptivePacker(const Executor& executor, const AdaptiveInput& input, const Shape& shape)
+  // The executor, the index and the input stay with the caller.
+  //   first_cell: see adaptive_detail::Attempt
+  AdaptivePacker(const Executor& executor, const adaptive_detail::AdaptiveIndex<Executor>& index,
+                 const AdaptiveInput& input, const Shape& shape, double first_cell)
       : executor_(executor),
+        index_(index),
         paced_(executor, [this, &input] { input.progress(share_done()); }),
         parameters_(input.parameters),
         box_(input.box),
         solid_volume_(input.volume),
+        first_cell_(first_cell),
         shape_(shape),
         grid_(executor, shape),
         tree_(executor, paced_),
+        idle_(executor),
         selection_(executor, paced_, shape) {
-    build_index(input);
-    at_a_time_ = adaptive_detail::elements_at_a_time(executor_.free_bytes(), input.most_at_a_time);
+    // More than keep all threads busy take memory for nothing.
+    const std::size_t most = min_of(input.most_at_a_time, 8 * Executor::kLeastPiece);
+    at_a_time_ = adaptive_detail::elements_at_a_time(executor_.free_bytes(), most);
     const Vec3d size = box_.upper - box_.lower;
     const double longest = max_of(size.x, max_of(size.y, size.z));
     shrink_ = longest * 1e-13 + (std::abs(box_.lower.x) + std::abs(box_.lower.y) + std::abs(box_.lower.z) +
@@ -142,8 +187,7 @@ class AdaptivePacker {
 
   AdaptiveResult pack() {
     place_all();
-    return {executor_.download(balls_.view()), lattice_count_, search_count_,
-            bvh_.bytes() + winding_.cells.bytes(), at_a_time_};
+    return {executor_.download(balls_.view()), lattice_count_, search_count_, index_.bytes(), at_a_time_};
   }
 
  private:
@@ -153,18 +197,6 @@ class AdaptivePacker {
   // more than new ones.
   static constexpr double kRebuildRatio = 0.75;
   static constexpr double kSphereVolume = 4.18879020478639098;  // 4/3 pi
-
-  // The winding numbers' index is made of the hierarchy's own facets, so that they are in memory once.
-  void build_index(const AdaptiveInput& input) {
-    {
-      const auto facets = gather_facets(executor_, input.positions, input.triangles);
-      input.progress(0);
-      bvh_ = build_triangle_bvh(executor_, facets.view(), box_);
-    }
-    input.progress(0);
-    winding_ = build_winding_index(executor_, bvh_.view.facets, box_);
-    input.progress(0);
-  }
 
   void place_all() {
     const Vec3d size = box_.upper - box_.lower;
@@ -210,6 +242,10 @@ class AdaptivePacker {
     const double spare = (parameters_.max_radius - shrink_ - least_radius_) / parameters_.max_radius;
     settling.tolerance = min_of(settling.tolerance, 0.5 * spare);
     threshold_ = settling.least();
+    // Balls that are placed stop what is pulled past them; ways are straight to about half a radius.
+    const double touching = shape_.span(2 * settling.radius + parameters_.gap, settling.radius);
+    idle_.reset(box_, touching + 0.5 * settling.radius, grid_.least_cell(box_));
+    searched_for_balls_ = balls_.size();
     std::size_t before = 0;
     do {
       before = balls_.size();
@@ -242,11 +278,11 @@ class AdaptivePacker {
   Fineness fineness(const Settling* settling) const {
     constexpr std::size_t kFirst = 5000;
     constexpr double kCellOfSettling = 1.4;
-    const Fineness usual = balls_.size() < kFirst ? Fineness{2.2, 1.0} : Fineness{2.8, 0.8};
+    const Fineness usual = balls_.size() < kFirst ? Fineness{first_cell_, 1.0} : Fineness{2.8, 0.8};
     return settling != nullptr ? Fineness{kCellOfSettling, usual.region} : usual;
   }
 
-  FieldView<Shape> field() { return {bvh_.view, winding_.view, grid_.view(), parameters_.wall}; }
+  FieldView<Shape> field() { return {index_.bvh.view, index_.winding.view, grid_.view(), parameters_.wall}; }
 
   // Starts from the densest lattice of balls of max_radius where that is small against the model in two
   // directions at least, in the best of several orientations and offsets; `Lattice` says which there are. In
@@ -265,7 +301,7 @@ class AdaptivePacker {
     const double least_share = fills_by_itself ? kLeastShare : kLeastShareOfSlab;
     // A trifle smaller, so that ten balls fit where ten diameters are the length of a box.
     const double radius = parameters_.max_radius * (1 - kTrifle);
-    const LatticeFit fit{bvh_.view, winding_.view, radius + parameters_.wall + shrink_};
+    const LatticeFit fit{index_.bvh.view, index_.winding.view, radius + parameters_.wall + shrink_};
     Lattice best;
     std::size_t best_count = 0;
     for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
@@ -337,8 +373,12 @@ class AdaptivePacker {
   // pulled.
   bool place_round(const Settling* settling = nullptr) {
     using namespace adaptive_detail;
-    const View<const std::uint32_t> cells =
+    View<const std::uint32_t> cells =
         tree_.refine(field(), threshold_, fineness(settling).cell * threshold_, max_of(least_radius_, 0.0));
+    if (settling != nullptr) {
+      cells = idle_.awake(tree_.view(), cells, tree_.tidied(), balls_.view_from(searched_for_balls_));
+      searched_for_balls_ = balls_.size();
+    }
     if (cells.size == 0) return false;
     search_count_ += cells.size;
     search(cells, settling);
@@ -367,11 +407,17 @@ class AdaptivePacker {
       paced_.for_each_index(list.size, Search<Shape>{tree_.view(), field(), list, limits, shrink_,
                                                      searched_.view(), found_.view()});
       if (settling != nullptr) {
-        paced_.for_each_index(list.size,
-                              Settle<Shape>{field(), *settling, shrink_, searched_.view(), found_.view()});
+        paced_.for_each_index(list.size, Settle<Shape>{tree_.view(), list, field(), *settling, shrink_,
+                                                       searched_.view(), found_.view(), idle_.paths()});
       }
-      const ListFound append{searched_.view(),   found_.view(), found,
-                             candidates_.view(), keys_.view(),  order_.view()};
+      const ListFound append{searched_.view(),
+                             found_.view(),
+                             found,
+                             settling != nullptr,
+                             settling != nullptr ? settling->pull : Vec3d{0, 0, 0},
+                             candidates_.view(),
+                             keys_.view(),
+                             order_.view()};
       found += executor_.select(list.size, TallyMarked{found_.view()}, append).first;
     });
     resize_candidates(found);
@@ -400,13 +446,13 @@ class AdaptivePacker {
   }
 
   const Executor& executor_;
+  const adaptive_detail::AdaptiveIndex<Executor>& index_;
   Paced<Executor> paced_;
   AdaptiveParameters parameters_;
   Box3d box_;
   double solid_volume_;
+  double first_cell_;
   Shape shape_;
-  TriangleBvh<Executor> bvh_;
-  WindingIndex<Executor> winding_;
   double shrink_ = 0;
   double threshold_ = 0;
   double least_radius_ = 0;
@@ -418,6 +464,8 @@ class AdaptivePacker {
   BallGrid<Executor, Shape> grid_;
   BallOrder<Executor> ball_order_;
   CellTree<Executor, Shape> tree_;
+  IdleCells<Executor> idle_;
+  std::size_t searched_for_balls_ = 0;  // so many stood when cells were last chosen to settle balls from
   CandidateSelection<Executor, Shape> selection_;
   GrowingBuffer<Executor, Ball> balls_;
   GrowingBuffer<Executor, Candidate> searched_, candidates_;
@@ -454,8 +502,62 @@ struct AdaptivePacking {
 
   template <typename Executor>
   static AdaptiveResult pack(const Executor& executor, const AdaptiveInput& input) {
-    adaptive_detail::require_room_for_index(input.triangles.size(), executor.free_bytes());
-    return AdaptivePacker<Executor, Shape>(executor, input, Shape::under(input.parameters.roof)).pack();
+    using namespace adaptive_detail;
+    require_room_for_index(input.triangles.size(), executor.free_bytes());
+    const AdaptiveIndex<Executor> index(executor, input);
+    const std::size_t attempts = 1 + (input.searches_more ? kBestAttempts.size() : 0);
+    AdaptiveResult best = attempt(executor, index, part_of(input, 0, attempts), Attempt{});
+    if (!input.searches_more || best.balls.empty()) return best;
+    const double largest = largest_of(best.balls);
+    double most = volume_of(best.balls, input);
+    for (std::size_t k = 0; k < kBestAttempts.size(); ++k) {
+      AdaptiveInput part = part_of(input, k + 1, attempts);
+      double& max_radius = part.parameters.max_radius;
+      max_radius = min_of(max_radius, kBestAttempts[k].share_of_largest * largest);
+      // A density that is wanted is reached with the fewest balls by the largest.
+      if (max_radius < input.parameters.min_radius || most >= input.parameters.max_volume) break;
+      AdaptiveResult other = attempt(executor, index, part, kBestAttempts[k]);
+      other.search_count += best.search_count;
+      const double volume = volume_of(other.balls, input);
+      if (volume > most) {
+        best = std::move(other);
+        most = volume;
+      } else {
+        best.search_count = other.search_count;
+      }
+    }
+    return best;
+  }
+
+ private:
+  template <typename Executor>
+  static AdaptiveResult attempt(const Executor& executor,
+                                const adaptive_detail::AdaptiveIndex<Executor>& index,
+                                const AdaptiveInput& input, const adaptive_detail::Attempt& way) {
+    const Shape shape = Shape::under(input.parameters.roof);
+    return AdaptivePacker<Executor, Shape>(executor, index, input, shape, way.first_cell).pack();
+  }
+
+  // The input for one of several attempts, which is a part of what is to be done.
+  static AdaptiveInput part_of(const AdaptiveInput& input, std::size_t k, std::size_t attempts) {
+    AdaptiveInput part = input;
+    part.progress = [progress = input.progress, k, attempts](double done) {
+      progress((static_cast<double>(k) + done) / static_cast<double>(attempts));
+    };
+    return part;
+  }
+
+  static double largest_of(const std::vector<Ball>& balls) {
+    double largest = 0;
+    for (const Ball& ball : balls) largest = max_of(largest, ball.radius);
+    return largest;
+  }
+
+  static double volume_of(const std::vector<Ball>& balls, const AdaptiveInput& input) {
+    const Shape shape = Shape::under(input.parameters.roof);
+    double volume = 0;
+    for (const Ball& ball : balls) volume += shape.volume(ball.radius);
+    return volume;
   }
 };
 

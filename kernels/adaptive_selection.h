@@ -23,16 +23,15 @@ namespace aerate::kernels {
 struct Candidate {
   Vec3d point;
   double value;
-  double rank;  // the greater goes first; the value, unless balls of one size are placed
 };
 
 // Sorts candidates, the greatest rank first.
-AERATE_HD inline std::uint64_t rank_key(const Candidate& candidate) {
+AERATE_HD inline std::uint64_t rank_key(double rank) {
   union {
     double value;
     std::uint64_t bits;
   } convert;
-  convert.value = candidate.rank;
+  convert.value = rank;
   // Doubles sort as their bits do, once negative ones are turned over.
   constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
   return (convert.bits & kSign) != 0 ? convert.bits : ~convert.bits & ~kSign;
@@ -40,7 +39,7 @@ AERATE_HD inline std::uint64_t rank_key(const Candidate& candidate) {
 
 namespace selection_detail {
 
-enum class Verdict : std::uint32_t { undecided, accepted, rejected };
+enum class Verdict : std::uint8_t { undecided, accepted, rejected };
 
 // Candidates in a grid of linked lists, by rank.
 template <typename Shape>

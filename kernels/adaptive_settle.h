@@ -1,6 +1,8 @@
 #pragma once
 
+#include "kernels/adaptive_cells.h"
 #include "kernels/adaptive_field.h"
+#include "kernels/adaptive_idle.h"
 #include "kernels/adaptive_refine.h"
 #include "kernels/adaptive_selection.h"
 #include "kernels/vec.h"
@@ -19,7 +21,7 @@ namespace aerate::kernels {
 struct RestingPlace {
   Vec3d point;
   double value;  // f(point), at most R
-  bool at_rest;  // else point and value mean nothing
+  bool at_rest;  // else it got as far as `point`, and the value means nothing
 };
 
 struct Settling {
@@ -42,66 +44,70 @@ AERATE_HD inline RestingPlace find_resting_place(const FieldView<Shape>& field, 
   const double reach = settling.radius;  // how far a ball is moved at a time, about
   SurfaceAnchor anchor{start, 0, kNone};
   Vec3d p = start, from = start;
-  RestingPlace place{p, 0, false};
+  const auto nowhere = [](Vec3d end) { return RestingPlace{end, 0, false}; };
   FourConstraints four;
   four.reset_with_pull(p, settling.pull, wanted - reach, wanted + reach * (1.0 / 3), 1024 * reach);
   int restarts = 0;
   for (int step_count = 0; step_count < kMostSteps; ++step_count) {
     for (int k = 0; k < 2; ++k) {
-      if (!four.linearise(p)) return place;
+      if (!four.linearise(p)) return nowhere(p);
       Vec3d step = four.step();
       const double walked = length(step);
       if (walked > reach) step = step * (reach / walked);
       p = p + step;
       if (walked < 1e-3 * settling.radius) break;
     }
-    if (!four.linearise(p)) return place;
+    if (!four.linearise(p)) return nowhere(p);
     const double model = four.greatest();
     const double enough = min_of(model, settling.radius) - slack;
     const Clearance here = clearance_at(field, anchor, p, settling.radius, enough);
     if (here.value < enough) {
-      if (!four.enter_beside_pull(here, p)) return place;
+      if (!four.enter_beside_pull(here, p)) return nowhere(p);
       continue;
     }
     const double missing = wanted - model;
     if (missing >= 0.25 * slack || missing <= -0.25 * slack) {
       const double weight = four.pull_weight();
-      if (!(weight > 1e-3)) return place;
+      if (!(weight > 1e-3)) return nowhere(p);
       four.raise_pull(missing / weight);
       continue;
     }
     const bool moved = dot(p - from, settling.pull) >= 1e-2 * settling.radius;
     if (four.any_artificial_beside_pull() && moved) {
       // Nothing but the end of the region searched holds it: on from here.
-      if (++restarts > kMostRestarts) return place;
+      if (++restarts > kMostRestarts) return nowhere(p);
       from = p;
       four.reset_with_pull(p, settling.pull, wanted - reach, wanted + reach * (1.0 / 3), 1024 * reach);
       continue;
     }
-    place.point = p;
-    place.value = here.value;
-    place.at_rest = here.value >= settling.least();
-    return place;
+    return {p, here.value, here.value >= settling.least()};
   }
-  return place;
+  return nowhere(p);
 }
 
 // Kernel: lets candidates come to rest, those farthest along the pull first; the others are none.
 template <typename Shape>
 struct Settle {
+  CellsView cells;
+  View<const std::uint32_t> list;
   FieldView<Shape> field;
   Settling settling;
   double shrink;  // taken off every radius, against rounding
   View<Candidate> candidates;
   View<std::uint8_t> found;
+  View<IdlePath> paths;  // by cell
 
   AERATE_HD void operator()(std::size_t i) const {
+    const std::uint32_t id = list[i];
+    paths[id] = IdlePath::none();
     if (found[i] == 0) return;
     const RestingPlace place = find_resting_place(field, candidates[i].point, settling);
     found[i] = place.at_rest ? 1 : 0;
-    if (!place.at_rest) return;
-    candidates[i] = {place.point, min_of(place.value, settling.radius) - shrink,
-                     dot(place.point, settling.pull)};
+    if (!place.at_rest) {
+      paths[id] = IdlePath::along(place.point - cells.cells[id].centre);
+      return;
+    }
+    candidates[i] = {place.point, min_of(place.value, settling.radius) - shrink};
   }
 };
 

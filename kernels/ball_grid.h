@@ -78,19 +78,22 @@ struct BallGridView {
 
 namespace ball_grid_detail {
 
-// Squared distances from a coordinate to the nearest and the farthest point of a cell along one axis.
+// Squared distances from a coordinate to the nearest and the farthest point of an interval.
 struct AxisDistances {
   double nearest_squared, farthest_squared;
 
-  AERATE_HD AxisDistances(double coordinate, double origin, double cell, std::uint32_t i) {
-    const double below = coordinate - (origin + cell * i);
-    const double above = cell - below;
+  AERATE_HD AxisDistances(double coordinate, double lower, double size) {
+    const double below = coordinate - lower;
+    const double above = size - below;
     const double outside = max_of(max_of(-below, -above), 0.0);
     const double far = max_of(below, above);
     nearest_squared = outside * outside;
     farthest_squared = far * far;
   }
 };
+
+// What a ball is to a box of cells.
+enum class Beside { within_ball, may_touch, out_of_reach };
 
 struct BallKeys {
   View<const Ball> balls;
@@ -125,52 +128,77 @@ struct ReorderBalls {
 enum class EnterPass { mark_inside_and_count, link, mark_inside_and_count_by_cell, list };
 
 // Enters one layer of cells along z of a ball: the unit of work, so that a large ball is not one thread's.
+// Most cells of a layer lie wholly in a large ball or beyond its reach, which squares of them tell at once.
 template <typename Shape>
 struct EnterLayer {
+  static constexpr std::uint32_t kSquare = 8;  // cells along x and y
+
   BallGridView<Shape> grid;
   std::uint32_t first_ball;
   std::uint32_t layers;  // for each ball: at least as many as any has
   EnterPass pass;
   View<std::uint32_t> first_entries;  // by layer, written by the first pass, read by the second
   View<std::uint32_t> entry_count;    // one number: entries that are given out, in an order that nobody sees
-  View<std::uint32_t> remaining;      // by cell: balls to be listed
+  View<std::uint32_t> ends;  // by cell: how many balls are to be listed, then where the next one goes
   View<std::uint32_t> listed;
 
   AERATE_HD void operator()(std::size_t i) const {
     const std::uint32_t id = first_ball + static_cast<std::uint32_t>(i / layers);
     const Ball ball = grid.balls[id];
-    // Half the gap belongs to each ball: cells inside two balls at once cannot be.
-    const double inner = ball.radius + 0.5 * grid.gap;
     const Box3d influence = grid.shape.box_of_influence(ball, grid.gap, grid.reach);
     const CellBox range(grid.cells, influence.lower, influence.upper);
     const std::uint32_t z = range.z0 + static_cast<std::uint32_t>(i % layers);
     if (z > range.z1) return;
-    const AxisDistances dz(ball.centre.z, grid.cells.origin.z, grid.cells.cell_size, z);
     std::uint32_t entry = pass == EnterPass::link ? first_entries[i] : 0;
-    for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
-      const AxisDistances dy(ball.centre.y, grid.cells.origin.y, grid.cells.cell_size, y);
-      for (std::uint32_t x = range.x0; x <= range.x1; ++x) {
-        const AxisDistances dx(ball.centre.x, grid.cells.origin.x, grid.cells.cell_size, x);
-        const double nearest_squared = dx.nearest_squared + dy.nearest_squared + dz.nearest_squared;
-        const bool inside = dx.farthest_squared + dy.farthest_squared + dz.farthest_squared <= inner * inner;
-        const Vec3d middle = grid.cells.origin + Vec3d{x + 0.5, y + 0.5, z + 0.5} * grid.cells.cell_size;
-        if (!inside && !grid.shape.may_touch(ball, grid.gap, grid.reach, nearest_squared, middle,
-                                             grid.cells.cell_size)) {
-          continue;
-        }
-        enter(id, grid.cells.index(x, y, z), inside, entry);
+    for (std::uint32_t y = range.y0; y <= range.y1; y += kSquare) {
+      for (std::uint32_t x = range.x0; x <= range.x1; x += kSquare) {
+        enter_square(
+            id, ball,
+            CellBox{x, min_of(x + kSquare - 1, range.x1), y, min_of(y + kSquare - 1, range.y1), z, z}, entry);
       }
     }
     if (pass == EnterPass::mark_inside_and_count) first_entries[i] = atomic_add(entry_count[0], entry);
   }
 
  private:
+  AERATE_HD void enter_square(std::uint32_t id, const Ball& ball, const CellBox& square,
+                              std::uint32_t& entry) const {
+    const Beside whole = beside(ball, square);
+    if (whole == Beside::out_of_reach || (whole == Beside::within_ball && !marks())) return;
+    for (std::uint32_t y = square.y0; y <= square.y1; ++y) {
+      for (std::uint32_t x = square.x0; x <= square.x1; ++x) {
+        const Beside cell =
+            whole == Beside::within_ball ? whole : beside(ball, CellBox{x, x, y, y, square.z0, square.z1});
+        if (cell != Beside::out_of_reach)
+          enter(id, grid.cells.index(x, y, square.z0), cell == Beside::within_ball, entry);
+      }
+    }
+  }
+
+  AERATE_HD Beside beside(const Ball& ball, const CellBox& box) const {
+    const double cell = grid.cells.cell_size;
+    const Vec3d size = Vec3d{box.x1 - box.x0 + 1.0, box.y1 - box.y0 + 1.0, box.z1 - box.z0 + 1.0} * cell;
+    const Vec3d lower = grid.cells.origin + Vec3d{box.x0 * 1.0, box.y0 * 1.0, box.z0 * 1.0} * cell;
+    const AxisDistances x(ball.centre.x, lower.x, size.x), y(ball.centre.y, lower.y, size.y),
+        z(ball.centre.z, lower.z, size.z);
+    // Half the gap belongs to each ball: cells inside two balls at once cannot be.
+    const double inner = ball.radius + 0.5 * grid.gap;
+    if (x.farthest_squared + y.farthest_squared + z.farthest_squared <= inner * inner)
+      return Beside::within_ball;
+    const double nearest_squared = x.nearest_squared + y.nearest_squared + z.nearest_squared;
+    const bool may_touch = grid.shape.may_touch(ball, grid.gap, grid.reach, nearest_squared,
+                                                lower + size * 0.5, 0.5 * length(size));
+    return may_touch ? Beside::may_touch : Beside::out_of_reach;
+  }
+
+  AERATE_HD bool marks() const {
+    return pass == EnterPass::mark_inside_and_count || pass == EnterPass::mark_inside_and_count_by_cell;
+  }
+
   // `entry`: the layer's entries so far, or the next of them.
   AERATE_HD void enter(std::uint32_t id, std::size_t cell, bool inside, std::uint32_t& entry) const {
     if (inside) {
-      const bool marks =
-          pass == EnterPass::mark_inside_and_count || pass == EnterPass::mark_inside_and_count_by_cell;
-      if (marks) grid.heads[cell] = BallGridView<Shape>::kInsideBit | id;
+      if (marks()) grid.heads[cell] = BallGridView<Shape>::kInsideBit | id;
       return;
     }
     switch (pass) {
@@ -186,12 +214,12 @@ struct EnterLayer {
         return;
       }
       case EnterPass::mark_inside_and_count_by_cell:
-        atomic_add(remaining[cell], 1);
+        atomic_add(ends[cell], 1);
         return;
       case EnterPass::list:
         if (grid.heads[cell] != kNone) return;
-        // From the cell's end towards its start. The order depends on timing, which no query can see.
-        listed[grid.starts[cell] + atomic_add(remaining[cell], ~std::uint32_t{0}) - 1] = id;
+        // The order depends on timing, which no query can see.
+        listed[atomic_add(ends[cell], 1)] = id;
         return;
     }
   }
@@ -200,10 +228,10 @@ struct EnterLayer {
 // A cell that lies wholly in a ball lists none.
 struct ListNoneWithin {
   View<const std::uint32_t> heads;
-  View<std::uint32_t> remaining;
+  View<std::uint32_t> counts;
 
   AERATE_HD void operator()(std::size_t cell) const {
-    if (heads[cell] != kNone) remaining[cell] = 0;
+    if (heads[cell] != kNone) counts[cell] = 0;
   }
 };
 
@@ -243,12 +271,7 @@ class BallGrid {
   BallGridView<Shape> view() { return view_; }
   double reach() const { return view_.reach; }
   // No cell of a grid over the box should be smaller, for memory's sake.
-  double least_cell(const Box3d& box) const {
-    const Vec3d size = box.upper - box.lower;
-    const double volume =
-        max_of(size.x, view_.reach) * max_of(size.y, view_.reach) * max_of(size.z, view_.reach);
-    return std::cbrt(volume / most_cells());
-  }
+  double least_cell(const Box3d& box) const { return cell_of(box, fitting_cells()); }
 
   // A grid over the box for clearances up to `reach`, with all balls that have been entered so far.
   //   most_at_a_time: layers of balls that are worked on at a time, four bytes each
@@ -257,7 +280,7 @@ class BallGrid {
     most_at_a_time_ = most_at_a_time;
     view_.reach = reach;
     view_.gap = gap;
-    view_.cells = make_cell_grid(box, max_of(kCellToReach * reach, least_cell(box)));
+    view_.cells = make_cell_grid(box, max_of(kCellToReach * reach, cell_of(box, useful_cells())));
     const std::size_t count = view_.cells.cell_count();
     if (heads_.size() < count) {
       heads_ = {};
@@ -296,11 +319,26 @@ class BallGrid {
     double largest;
   };
 
+  // The edge of cells of which so many fill the box.
+  double cell_of(const Box3d& box, std::size_t count) const {
+    const Vec3d size = box.upper - box.lower;
+    const double volume =
+        max_of(size.x, view_.reach) * max_of(size.y, view_.reach) * max_of(size.z, view_.reach);
+    return std::cbrt(volume / static_cast<double>(count));
+  }
+
   // More would be of use to few models; and no more than an eighth of the memory.
-  double most_cells() const {
+  std::size_t fitting_cells() const {
     constexpr std::size_t kMost = std::size_t{1} << 25;
     const std::size_t fitting = executor_.free_bytes() / 8 / sizeof(std::uint32_t);
-    return static_cast<double>(max_of(min_of(fitting, kMost), std::size_t{1024}));
+    return max_of(min_of(fitting, kMost), std::size_t{1024});
+  }
+
+  // Large balls are entered in all cells along their surfaces: cells beyond what the balls have use for take
+  // longer to fill than all searches do (docs/packing.md).
+  std::size_t useful_cells() const {
+    constexpr std::size_t kFewest = std::size_t{1} << 16, kPerBall = 32;
+    return min_of(max_of(kFewest, kPerBall * view_.balls.size), fitting_cells());
   }
 
   std::size_t end_of(std::size_t group) const {
@@ -327,24 +365,24 @@ class BallGrid {
     executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, kNone});
     executor_.for_each_index(1, SetAll<std::uint32_t>{entry_count_.view(), 0});
     entries_.clear();
-    auto remaining = executor_.template allocate<std::uint32_t>(count);
-    executor_.for_each_index(count, SetAll<std::uint32_t>{remaining.view(), 0});
-    for_each_layer(EnterPass::mark_inside_and_count_by_cell, remaining.view());
-    executor_.for_each_index(count, ListNoneWithin{view_.heads, remaining.view()});
-    const std::uint64_t total =
-        executor_.exclusive_scan(View<const std::uint32_t>(remaining.view()), {starts_.view().data, count});
+    // Where a cell's balls end is where the next one's begin: one array counts them, says where the next
+    // ball goes, and has all starts in the end, the first of which is 0.
+    const View<std::uint32_t> starts{starts_.view().data, count + 1};
+    const View<std::uint32_t> ends{starts.data + 1, count};
+    executor_.for_each_index(count + 1, SetAll<std::uint32_t>{starts, 0});
+    for_each_layer(EnterPass::mark_inside_and_count_by_cell, ends);
+    executor_.for_each_index(count, ListNoneWithin{view_.heads, ends});
+    const std::uint64_t total = executor_.exclusive_scan(View<const std::uint32_t>(ends), ends);
     require_fewer_than_bits(total);
-    executor_.for_each_index(
-        1, SetAll<std::uint32_t>{{starts_.view().data + count, 1}, static_cast<std::uint32_t>(total)});
-    view_.starts = {starts_.view().data, count + 1};
+    view_.starts = starts;
     listed_ = {};
     listed_ = executor_.template allocate<std::uint32_t>(static_cast<std::size_t>(total));
-    for_each_layer(EnterPass::list, remaining.view());
+    for_each_layer(EnterPass::list, ends);
     view_.listed = listed_.view();
     linked_work_ = 0;
   }
 
-  void for_each_layer(ball_grid_detail::EnterPass pass, View<std::uint32_t> remaining) {
+  void for_each_layer(ball_grid_detail::EnterPass pass, View<std::uint32_t> ends) {
     for (std::size_t k = 0; k < groups_.size(); ++k) {
       const std::size_t last = end_of(k);
       const std::uint32_t layers = layers_of(groups_[k].largest);
@@ -356,7 +394,7 @@ class BallGrid {
                                               pass,
                                               {},
                                               {},
-                                              remaining,
+                                              ends,
                                               listed_.view()});
     }
   }

@@ -51,6 +51,9 @@ inline CellGrid make_cell_grid(const Box3d& box, double cell_size) {
 struct CellBox {
   std::uint32_t x0, x1, y0, y1, z0, z1;
 
+  AERATE_HD CellBox(std::uint32_t first_x, std::uint32_t last_x, std::uint32_t first_y, std::uint32_t last_y,
+                    std::uint32_t first_z, std::uint32_t last_z)
+      : x0(first_x), x1(last_x), y0(first_y), y1(last_y), z0(first_z), z1(last_z) {}
   AERATE_HD CellBox(const CellGrid& grid, Vec3d lower, Vec3d upper)
       : x0(grid.cell_x(lower.x)),
         x1(grid.cell_x(upper.x)),

@@ -20,8 +20,9 @@ struct Pair {
 std::uint64_t SerialExecutor::exclusive_scan(View<const std::uint32_t> in, View<std::uint32_t> out) const {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < in.size; ++i) {
+    const std::uint32_t value = in[i];
     out[i] = static_cast<std::uint32_t>(sum);
-    sum += in[i];
+    sum += value;
   }
   return sum;
 }
@@ -41,8 +42,9 @@ std::uint64_t TbbExecutor::exclusive_scan(View<const std::uint32_t> in, View<std
       tbb::blocked_range<std::size_t>(0, in.size, std::size_t{1} << 14), std::uint64_t{0},
       [in, out](const tbb::blocked_range<std::size_t>& range, std::uint64_t sum, bool is_final) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          const std::uint32_t value = in[i];
           if (is_final) out[i] = static_cast<std::uint32_t>(sum);
-          sum += in[i];
+          sum += value;
         }
         return sum;
       },

@@ -28,7 +28,7 @@
 //                                    of up to three lists; returns the sum over all. tally may be called
 //                                    several times and must not read what emit writes
 //   exclusive_scan(in, out)          out[i] = in[0] + ... + in[i-1]; returns the sum of all (64 bit, whatever
-//                                    the offsets are); `in` and `out` are different memory
+//                                    the offsets are); `in` and `out` may be the same memory
 //   sort_pairs(keys, values)         both by (key, value) ascending; values ascend already
 //   free_bytes()                     what could still be allocated, for those who can do with less, or
 //                                    kAsMuchAsIsWanted

@@ -174,8 +174,8 @@ struct StoreSums {
   std::uint64_t* total;
 
   __device__ void operator()(std::size_t i, std::uint64_t sum) const {
-    out[i] = static_cast<std::uint32_t>(sum);
     if (i + 1 == in.size) *total = sum + in[i];
+    out[i] = static_cast<std::uint32_t>(sum);
   }
 };
 

@@ -18,7 +18,7 @@
 //   constraint_beside(...)  that radius as a function that is easy to work with near p
 //   comes_nearer(...)       whether two voids within their span are nearer to each other than the gap
 //   box_of_influence(...)   holds every p beside which a placed void leaves a radius of `reach` or less
-//   may_touch(...)          whether there may be such a p in a cell
+//   may_touch(...)          whether there may be such a p in a box of cells
 //   volume(radius)
 //
 // and for the surface either kIsBall, which asks how far it is, or the functions that RoofedShape has for it.
@@ -58,7 +58,7 @@ struct BallShape {
     return {ball.centre - half, ball.centre + half};
   }
   AERATE_HD bool may_touch(const Ball& ball, double gap, double reach, double nearest_squared,
-                           Vec3d /*middle*/, double /*cell_size*/) const {
+                           Vec3d /*middle*/, double /*half_diagonal*/) const {
     const double outer = ball.radius + gap + reach;
     return nearest_squared <= outer * outer;
   }
@@ -100,17 +100,16 @@ struct RoofedShape {
         max_of(box.upper, max_of(top + Vec3d{upper, upper, upper}, bottom + Vec3d{lower, lower, lower}));
     return box;
   }
-  // Clearances change by no more than the way from the cell's middle.
+  // Clearances change by no more than the way from the box's middle.
   AERATE_HD bool may_touch(const Ball& ball, double gap, double reach, double nearest_squared, Vec3d middle,
-                           double cell_size) const {
-    constexpr double kHalfDiagonal = 0.86602540378443865 * (1 + 1e-9);
+                           double half_diagonal) const {
+    const double half = half_diagonal * (1 + 1e-9);
     // The own roof is above the ball, and roofs of others are below it: the ball alone is beside the rest.
-    const double height = dot(middle - ball.centre, roof.up), half = kHalfDiagonal * cell_size;
+    const double height = dot(middle - ball.centre, roof.up);
     const bool has_roofs = height > -half ? roof.shapes(ball.radius) : false;
     if (!has_roofs && !(height < half && roof.shapes(reach)))
-      return BallShape{}.may_touch(ball, gap, reach, nearest_squared, middle, cell_size);
-    const double radius = kernels::radius_beside(roof, middle, ball.centre, ball.radius, gap).value;
-    return radius - kHalfDiagonal * cell_size <= reach;
+      return BallShape{}.may_touch(ball, gap, reach, nearest_squared, middle, half_diagonal);
+    return kernels::radius_beside(roof, middle, ball.centre, ball.radius, gap).value - half <= reach;
   }
 
   // The largest void at p inside the surface that keeps the wall, given the facet that it touches nearby.

@@ -119,6 +119,14 @@ PackingCommandOptions::PackingCommandOptions(CLI::App& command, const ConfigFile
       ->type_name("METHOD")
       ->capture_default_str();
   command
+      .add_option("--effort", effort_,
+                  stops +
+                      ": normal, or best: six packings, of which the one that removes most is kept, for six "
+                      "to eleven times the time")
+      ->check(CLI::IsMember({"normal", "best"}))
+      ->type_name("EFFORT")
+      ->capture_default_str();
+  command
       .add_option("--max-voids", max_voids_,
                   stops + ": no more voids than this, the largest ones (default no limit)")
       ->check(whole_number_between(1, 4e9, "voids"))
@@ -148,6 +156,12 @@ PackingRequest PackingCommandOptions::request() const {
   if (request.method->on_lattice && (max_voids_ || target_density_)) {
     throw UsageError(fmt::format("--max-voids and --target-density are for {}", stoppable_packings()),
                      fmt::format("leave out --packing {}", packing_));
+  }
+  if (effort_ == "best") {
+    if (request.method->on_lattice)
+      throw UsageError(fmt::format("--effort best is for {}", stoppable_packings()),
+                       fmt::format("leave out --packing {}", packing_));
+    request.stop.effort = PackingEffort::best;
   }
   if (max_voids_) request.stop.max_count = static_cast<std::size_t>(*max_voids_);
   if (target_density_) request.stop.target_density = *target_density_ / 100;

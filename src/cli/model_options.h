@@ -42,7 +42,7 @@ struct ModelOptions {
   std::string scale_ = "1";
 };
 
-// The options of the process and its limits, --packing, --max-voids, --target-density, --device
+// The options of the process and its limits, --packing, --effort, --max-voids, --target-density, --device
 struct PackingCommandOptions {
   PackingCommandOptions(CLI::App& command, const ConfigFile& config);
   // Throws UsageError for options that contradict each other.
@@ -54,6 +54,7 @@ struct PackingCommandOptions {
   const ConfigFile& config_;
   ProcessOptions process_;
   std::string packing_{packing_methods().front().name};
+  std::string effort_ = "normal";
   std::optional<double> max_voids_;
   std::optional<double> target_density_;  // percent
   std::string device_ = "auto";

@@ -51,7 +51,7 @@ const std::vector<Group>& groups() {
       {"Limits",
        {"wall", "gap", "min-radius", "max-radius", "overhang", "bridge", "max-voids", "target-saving",
         "target-mass", "target-density", "stand", "keep-solid"}},
-      {"Shape of voids", {"shape", "cell-size", "fillet", "packing", "tolerance", "max-triangles"}},
+      {"Shape of voids", {"shape", "cell-size", "fillet", "packing", "effort", "tolerance", "max-triangles"}},
       {"Drainage",
        {"drain", "channel-diameter", "hole-diameter", "escape-hole", "holes-on", "holes-not-on",
         "drain-cavities"}},

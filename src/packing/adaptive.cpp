@@ -41,6 +41,7 @@ kernels::AdaptiveInput input_for(const Mesh& mesh, const PackingLimits& limits, 
   input.parameters.max_count = stop.max_count;
   input.parameters.roof = limits.roof;
   input.parameters.in_level_squares = limits.in_level_squares;
+  input.searches_more = stop.effort == PackingEffort::best && stop.max_count > 1;
   if (stop.target_density < 1) {
     input.parameters.max_volume = stop.target_density * stop.volume.value_or(input.volume);
   }
@@ -82,8 +83,11 @@ WorkEstimate estimate_work(const Mesh& mesh, double volume, const PackingLimits&
   constexpr double kSecondsPerSphere = 200e-6, kSecondsPerVoidWithRoof = 320e-6;
   const auto facets = static_cast<double>(mesh.triangles.size());
   const double spheres = expected_spheres(mesh, volume, limits, stop);
+  constexpr double kWorkOfBest = 8;  // to normal work, about
+  const double effort = stop.effort == PackingEffort::best ? kWorkOfBest : 1;
   const bool has_roofs = limits.roof.shapes(limits.max_radius);
-  return {facets * kSecondsPerFacet + spheres * (has_roofs ? kSecondsPerVoidWithRoof : kSecondsPerSphere),
+  const double per_sphere = effort * (has_roofs ? kSecondsPerVoidWithRoof : kSecondsPerSphere);
+  return {facets * kSecondsPerFacet + spheres * per_sphere,
           facets * (sizeof(Triangle) + sizeof(Vec3f)) + spheres * sizeof(kernels::Ball)};
 }
 

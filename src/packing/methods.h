@@ -14,12 +14,17 @@
 
 namespace aerate {
 
+// How much is searched: `best` packs in several ways and keeps what removes most. docs/packing.md has what that
+// takes and brings.
+enum class PackingEffort { normal, best };
+
 // When a packing stops that could go on: at the first of
 struct PackingStop {
   std::size_t max_count = std::numeric_limits<std::size_t>::max();  // so many spheres,
   double target_density = 1.0;  // this share, in (0, 1), of the model's volume,
   // which is this, mm3, for a model whose shells overlap; else what its surface bounds.
   std::optional<double> volume = std::nullopt;
+  PackingEffort effort = PackingEffort::normal;  // until then
 };
 
 // What a packing is going to take, about, and what to say where that is too much.

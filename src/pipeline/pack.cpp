@@ -225,6 +225,7 @@ PackingRequest sized_for(const PreparedModel& model, PackingRequest request, Mon
     request.spacing = spacing_of_cells(request.limits());
   PackingStop first_alone = request.stop;
   first_alone.max_count = 1;
+  first_alone.effort = PackingEffort::normal;
   first_alone.volume = model.inspection.filled_volume;
   const Packing largest =
       request.method->pack(model.room(), request.sphere_limits(), first_alone, monitor, request.device);

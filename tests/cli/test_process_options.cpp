@@ -136,6 +136,9 @@ TEST(ProcessOptions, LimitsForCeilingsThatMakeNoRoofAreRefused) {
   expect_refused(job, {"--process", "sls", "--bridge", "5"}, kUsage, {"sls", "--overhang"});
   expect_refused(job, {"--packing", "hexagonal", "--max-radius", "5"}, kUsage,
                  {"no room for roofs", "--max-radius 3.53", "--bridge 10"});
+  expect_refused(job, {"--packing", "hexagonal", "--max-radius", "3", "--effort", "best"}, kUsage,
+                 {"--effort best is for adaptive", "leave out --packing hexagonal"});
+  expect_refused(job, {"--effort", "great"}, kUsage, {"--effort", "best"});
   const auto without_roofs = job.input("spheres.csv", "x,y,z,radius,kind\n20,20,28,9.5,adaptive\n");
   expect_refused(job, {"--spheres", without_roofs, "--max-radius", "10"}, kUnreadable,
                  {"with the roofs that", "--bridge"});

@@ -67,6 +67,11 @@ TEST_F(AdaptiveCuda, StopsAtACountAndADensityAsTheCpuDoes) {
   expect_same_on_cuda(torus, {0, 0, 0.1, 10}, {.target_density = 0.5}, 5);
 }
 
+TEST_F(AdaptiveCuda, KeepsTheDensestOfSeveralPackingsAsTheCpuDoes) {
+  const Mesh torus = test::make_torus(5, 2, 48, 24);
+  expect_same_on_cuda(torus, {0.1, 0.1, 0.5, 10}, {.effort = PackingEffort::best}, 10);
+}
+
 struct RealModel {
   const char* name;  // of the test
   const char* file;

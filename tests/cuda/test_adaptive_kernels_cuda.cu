@@ -338,8 +338,10 @@ RoundStages run_round(const Executor& executor, const Job& job) {
   auto order = executor.template allocate<std::uint32_t>(list.size());
   const std::size_t count =
       executor
-          .select(list.size(), TallyMarked{found.view()},
-                  ListFound{searched.view(), found.view(), 0, candidates.view(), keys.view(), order.view()})
+          .select(
+              list.size(), TallyMarked{found.view()},
+              ListFound{
+                  searched.view(), found.view(), 0, false, {}, candidates.view(), keys.view(), order.view()})
           .first;
   stages.candidates = bytes_at(executor, View<Candidate>{candidates.view().data, count});
   executor.sort_pairs({keys.view().data, count}, {order.view().data, count});
@@ -392,28 +394,61 @@ TEST_F(AdaptiveKernelsCuda, SearchesAndSelection) {
   EXPECT_EQ(cuda.balls, cpu.balls);
 }
 
+struct SettleStages {
+  Bytes candidates, found, paths, awake;
+
+  bool operator==(const SettleStages&) const = default;
+};
+
 template <typename Executor>
-std::pair<Bytes, Bytes> settle(const Executor& executor, const Job& job) {
+SettleStages settle(const Executor& executor, const Job& job) {
   using namespace adaptive_detail;
   Packed<Executor> packed(executor, job);
   // Where the largest balls might go: points of a grid that are far enough from everything.
   const Settling settling{0.4};
+  const std::vector<Vec3d> points = points_in(job.input.box, 3000);
   std::vector<Candidate> starts;
-  for (const Vec3d& p : points_in(job.input.box, 3000)) starts.push_back({p, 0.45, 0.45});
+  std::vector<Cell> places;
+  std::vector<std::uint32_t> numbers;
+  for (const Vec3d& p : points) {
+    starts.push_back({p, 0.45});
+    places.push_back({p, 0.45, kNone, 0});
+    numbers.push_back(static_cast<std::uint32_t>(numbers.size()));
+  }
   auto candidates = executor.upload(std::span<const Candidate>(starts));
+  auto cells = executor.upload(std::span<const Cell>(places));
+  const auto list = executor.upload(std::span<const std::uint32_t>(numbers));
   auto found = executor.template allocate<std::uint8_t>(starts.size());
   executor.for_each_index(starts.size(), SetAll<std::uint8_t>{found.view(), 1});
-  executor.for_each_index(
-      starts.size(), Settle<BallShape>{packed.field(), settling, 1e-12, candidates.view(), found.view()});
-  return {bytes_at(executor, candidates.view()), bytes_at(executor, found.view())};
+  const CellsView view{cells.view(), {}, 1};
+  IdleCells<Executor> idle(executor);
+  idle.reset(job.input.box, 1.0, 0.1);
+  const std::size_t all = idle.awake(view, list.view(), 0, {}).size;
+  executor.for_each_index(all, Settle<BallShape>{view, list.view(), packed.field(), settling, 1e-12,
+                                                 candidates.view(), found.view(), idle.paths()});
+  SettleStages stages{bytes_at(executor, candidates.view()),
+                      bytes_at(executor, found.view()),
+                      bytes_at(executor, idle.paths()),
+                      {}};
+  // Some balls are placed near some ways.
+  const std::vector<Ball> placed{{points[100], 0.4}, {points[1500], 0.4}};
+  auto balls = executor.upload(std::span<const Ball>(placed));
+  auto chosen = idle.awake(view, list.view(), 0, balls.view());
+  stages.awake = bytes_at(executor, chosen);
+  return stages;
 }
 
 TEST_F(AdaptiveKernelsCuda, LargestBallsSettle) {
   const Job job;
-  const auto cpu = settle(SerialExecutor{}, job);
-  EXPECT_GT(std::count(cpu.second.begin(), cpu.second.end(), 1), 20);
-  EXPECT_GT(std::count(cpu.second.begin(), cpu.second.end(), 0), 20);
-  EXPECT_EQ(settle(CudaExecutor(0), job), cpu);
+  const SettleStages cpu = settle(SerialExecutor{}, job);
+  const auto at_rest = std::count(cpu.found.begin(), cpu.found.end(), 1);
+  const auto nowhere = std::count(cpu.found.begin(), cpu.found.end(), 0);
+  EXPECT_GT(at_rest, 20);
+  EXPECT_GT(nowhere, 20);
+  // Those that came to rest, and some of the others.
+  EXPECT_GT(cpu.awake.size(), sizeof(std::uint32_t) * static_cast<std::size_t>(at_rest));
+  EXPECT_LT(cpu.awake.size(), sizeof(std::uint32_t) * static_cast<std::size_t>(at_rest + nowhere));
+  EXPECT_TRUE(settle(CudaExecutor(0), job) == cpu);
 }
 
 template <typename Executor>

@@ -87,6 +87,9 @@ void expect_same_scan(const std::vector<std::uint32_t>& values) {
       SerialExecutor{}.exclusive_scan({values.data(), values.size()}, {expected.data(), expected.size()});
   EXPECT_EQ(sum, expected_sum);
   EXPECT_EQ(cuda.download(out.view()), expected);
+  auto in_place = cuda.upload(span_of(values));
+  EXPECT_EQ(cuda.exclusive_scan(in_place.view(), in_place.view()), expected_sum);
+  EXPECT_EQ(cuda.download(in_place.view()), expected);
 }
 
 TEST_F(ExecCuda, Scans) {

@@ -213,6 +213,33 @@ TEST(Adaptive, IsTheSameInPiecesOfAnySize) {
             0);
 }
 
+// Of several packings, the first of which is that of normal effort.
+TEST(Adaptive, BestEffortRemovesMore) {
+  const PackingLimits limits{0.2, 0.1, 0.8, kInfinity};
+  const PackingStop best{.effort = PackingEffort::best};
+  double gained = 0;
+  for (const Mesh& mesh :
+       {make_bracket(), test::make_torus(5, 2, 48, 24), test::make_box({0, 0, 0}, {9, 7, 8})}) {
+    const Packing normal = pack(mesh, limits);
+    const Packing most = pack(mesh, limits, best);
+    EXPECT_GE(total_volume(most), total_volume(normal));
+    gained += total_volume(most) - total_volume(normal);
+    EXPECT_GT(most.statistics.candidates, 4 * normal.statistics.candidates);
+    expect_limits_held(mesh, most);
+    expect_same_bytes(most, pack(mesh, limits, best, DeviceRequest::Kind::cpu_one_thread));
+  }
+  EXPECT_GT(gained, 0.1);
+}
+
+TEST(Adaptive, BestEffortKeepsTheLimitsOfCountAndDensity) {
+  const Mesh bracket = make_bracket();
+  const PackingLimits limits{0.2, 0.1, 0.4, 1.5};
+  EXPECT_EQ(pack(bracket, limits, {.max_count = 30, .effort = PackingEffort::best}).spheres.size(), 30U);
+  // What reaches the density that is wanted is taken.
+  expect_same_bytes(pack(bracket, limits, {.target_density = 0.2}),
+                    pack(bracket, limits, {.target_density = 0.2, .effort = PackingEffort::best}));
+}
+
 TEST(Adaptive, StopsAtACountWithTheLargest) {
   const Mesh bracket = make_bracket();
   const Packing few = pack(bracket, {0.5, 0.5, 0.1, kInfinity}, {.max_count = 20});
@@ -356,6 +383,14 @@ TEST(Adaptive, BallsOfTheLargestRadiusComeToRestWhereNoLatticeFits) {
     if (test::distance_to_surface(bracket, s.centre) < s.radius + 0.01) ++touched;
     EXPECT_GE(touched, 1) << s.centre.x << ' ' << s.centre.y << ' ' << s.centre.z;
   }
+}
+
+// Where nothing was placed since nothing was found there.
+TEST(Adaptive, LooksForRestOnlyWhereABallCameNear) {
+  const Mesh slab = test::make_box({0, 0, 0}, {24, 24, 1});
+  const Packing packing = pack(slab, {0, 0, 0.3, 0.4});
+  EXPECT_GT(packing.spheres.size(), 800U);
+  EXPECT_LT(packing.statistics.candidates, 100 * packing.spheres.size());
 }
 
 TEST(Adaptive, PlacesSpheresOfOneSizeWhereNoLatticeFits) {
