@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "supports/ridges.h"
 #include "supports/support_rules.h"
 #include "supports/undersides.h"
 
@@ -10,12 +11,6 @@ namespace aerate {
 
 // Where supports touch what they hold.
 enum class ToothKind { ridge, cone };
-
-// Columns in a row under which a narrow ridge runs, along x or along y; one alone: a short one.
-struct RidgeRun {
-  std::vector<std::uint32_t> spans;
-  bool along_x = true;
-};
 
 struct TeethPlan {
   ToothKind kind = ToothKind::ridge;
@@ -26,8 +21,8 @@ struct TeethPlan {
 };
 
 // Teeth so that no ceiling is farther from what holds it than the process's reach, and one under each place that begins in the
-// air. Ridges: in each overhang parallel ones no farther apart than twice the reach, the way and the phase that take the
-// least length, and under free edges; cones, and what ridges miss: always where it is farthest.
+// air. Ridges: in each overhang parallel ones no farther apart than twice the reach, and under free edges (supports/ridges.h); cones, and
+// what ridges miss: always where it is farthest.
 TeethPlan plan_teeth(const Undersides& undersides, const SupportRules& rules, ToothKind kind);
 
 }  // namespace aerate

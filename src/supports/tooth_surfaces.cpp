@@ -20,6 +20,8 @@ constexpr double kConeSlope = 0.35, kWidestBase = 2.5;
 constexpr double kNarrowTip = 0.6;
 // A flat tip below a point is farther from it at its middle; no more than so many gaps.
 constexpr double kMostGap = 1.25;
+// The share of the least height that is enough on the plate, where layers begin.
+constexpr double kLeastShareOnPlate = 0.6;
 
 // Heights between which a tooth is, at one place.
 struct Extent {
@@ -166,26 +168,54 @@ bool keeps_off(const Mesh& tooth, const SurfaceIndex& model, const ToothShape& s
   });
 }
 
+// A tooth is high enough to be printed.
+bool is_high_enough(const Extent& z, double plate, const ToothShape& shape) {
+  const bool is_on_plate = z.lower <= plate;
+  return z.upper - z.lower >= (is_on_plate ? kLeastShareOnPlate : 1) * shape.least_height;
+}
+
+// Which way a ridge goes at each of its points, a unit vector, and how much wider its cuts are there than it is.
+struct RidgeWay {
+  double x = 1, y = 0;
+  double wider = 1;
+};
+
+RidgeWay way_at(const RidgeRun& run, std::size_t i) {
+  const auto between = [&](std::size_t from, std::size_t to) {
+    const double x = run.points[to].x - run.points[from].x, y = run.points[to].y - run.points[from].y;
+    const double length = std::hypot(x, y);
+    return length > 0 ? RidgeWay{x / length, y / length} : RidgeWay{};
+  };
+  const std::size_t last = run.points.size() - 1;
+  if (last == 0) return {};
+  if (i == 0) return between(0, 1);
+  if (i == last) return between(last - 1, last);
+  RidgeWay way = between(i - 1, i + 1);
+  const RidgeWay onward = between(i, i + 1);
+  way.wider = 1 / std::max(0.7, way.x * onward.x + way.y * onward.y);
+  return way;
+}
+
 // Where ridges have `z`-extents that are a tooth, flank by flank; pieces of a run, since room may end.
 template <typename Heights>
 void add_run(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& columns, const RidgeRun& run,
              const Heights& heights, const ToothShape& shape, std::vector<bool>& is_made) {
-  const double half = shape.width / 2;
-  // Ridges that meet in a corner share no vertices.
-  const double beyond = run.along_x ? half : 0.9 * half;
   const double nearest = 2 * columns.spacing;
-  const auto flanks = [&](std::uint32_t span, double along) -> std::optional<std::array<Flank, 2>> {
-    const double ceiling = columns.spans[span].ceiling;
-    const double x = columns.x_at(columns.x_of(span)) + (run.along_x ? along : 0);
-    const double y = columns.y_at(columns.y_of(span)) + (run.along_x ? 0 : along);
+  const auto flanks = [&](std::size_t i, double along) -> std::optional<std::array<Flank, 2>> {
+    const RidgeWay way = way_at(run, i);
+    const RidgePoint& point = run.points[i];
+    const double ceiling = columns.spans[point.span].ceiling;
+    // Ridges that meet in a corner share no vertices.
+    const double beyond = along * (std::abs(way.x) >= std::abs(way.y) ? 0.5 : 0.45) * shape.width;
+    const double x = point.x + beyond * way.x, y = point.y + beyond * way.y;
     std::array<Flank, 2> cut;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-      const double aside = side == 0 ? half : -half;  // left first
-      const double at_x = x + (run.along_x ? 0 : -aside), at_y = y + (run.along_x ? aside : 0);
+      const double aside = (side == 0 ? 0.5 : -0.5) * shape.width * way.wider;  // left first
+      const double at_x = x - aside * way.y, at_y = y + aside * way.x;
       cut[side] = {at_x, at_y, heights.extent(at_x, at_y, ceiling, nearest)};
     }
     for (const Flank& flank : cut)
-      if (!(flank.z.upper - flank.z.lower >= shape.least_height)) return std::nullopt;
+      if (!is_high_enough(flank.z, columns.plate, shape)) return std::nullopt;
     return cut;
   };
   const auto goes_on = [&](const std::array<Flank, 2>& from, const std::array<Flank, 2>& to) {
@@ -195,35 +225,36 @@ void add_run(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& 
   };
   std::vector<std::array<Flank, 2>> cuts;
   std::vector<std::uint32_t> under;  // the spans that these are under
-  std::uint32_t before = kNoSpan;
-  const auto finish = [&] {
+  const auto finish = [&](std::size_t end_at) {
     if (cuts.empty()) return;
-    if (const auto end = flanks(before, beyond); end && goes_on(cuts.back(), *end)) cuts.push_back(*end);
+    if (const auto end = flanks(end_at, 1); end && goes_on(cuts.back(), *end)) cuts.push_back(*end);
     if (cuts.size() > 1) {
       add_ridge(teeth.mesh, cuts);
-      teeth.tip_area += shape.width * std::hypot(cuts.back()[0].x - cuts.front()[0].x,
-                                                 cuts.back()[0].y - cuts.front()[0].y);
+      for (std::size_t i = 1; i < cuts.size(); ++i)
+        teeth.tip_area += shape.width *
+                          std::hypot(cuts[i][0].x + cuts[i][1].x - cuts[i - 1][0].x - cuts[i - 1][1].x,
+                                     cuts[i][0].y + cuts[i][1].y - cuts[i - 1][0].y - cuts[i - 1][1].y) /
+                          2;
       ++teeth.count;
       for (const std::uint32_t span : under) is_made[span] = true;
     }
     cuts.clear();
     under.clear();
   };
-  for (const std::uint32_t span : run.spans) {
-    const auto cut = flanks(span, 0);
+  for (std::size_t i = 0; i < run.points.size(); ++i) {
+    const auto cut = flanks(i, 0);
     if (!cut) {
-      finish();
+      finish(i - 1);
       continue;
     }
-    if (!cuts.empty() && !goes_on(cuts.back(), *cut)) finish();
+    if (!cuts.empty() && !goes_on(cuts.back(), *cut)) finish(i - 1);
     if (cuts.empty()) {
-      if (const auto begin = flanks(span, -beyond); begin && goes_on(*begin, *cut)) cuts.push_back(*begin);
+      if (const auto begin = flanks(i, -1); begin && goes_on(*begin, *cut)) cuts.push_back(*begin);
     }
     cuts.push_back(*cut);
-    under.push_back(span);
-    before = span;
+    under.push_back(run.points[i].span);
   }
-  finish();
+  finish(run.points.size() - 1);
 }
 
 // A flat tip leaves the gap at its rim, too.
@@ -280,7 +311,7 @@ bool add_cone_at(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersid
   const double radius = widths.tip * shape.width / 2;
   Extent z = heights.extent(at.x, at.y, at.z, columns.spacing);
   if (shape.gap > 0) keep_below_rim(heights, at, radius, columns.spacing, tip_is_above, z);
-  if (!(z.upper - z.lower >= shape.least_height)) return false;
+  if (!is_high_enough(z, columns.plate, shape)) return false;
   if (shape.gap > 0 && tip_is_above && at.z - z.upper > kMostGap * shape.gap) return false;
   const double base = std::min(radius + kConeSlope * (z.upper - z.lower), widths.widest_base * radius);
   const Vec3d upper{at.x, at.y, z.upper}, lower{at.x, at.y, z.lower};

@@ -10,11 +10,12 @@
 namespace aerate {
 
 struct ToothShape {
-  double width = 0.5;         // of ridges, and of the flat tips of cones, mm
-  double gap = 0.2;           // left free between a tooth and what it holds, mm
-  double penetration = 0.1;   // where nothing is left free: by how much a tip is within what it holds, mm
-  double embedded = 0.9;      // how deep a tooth goes into the body, mm
-  double least_height = 0.1;  // a lower tooth is none, mm
+  double width = 0.5;        // of ridges, and of the flat tips of cones, mm
+  double gap = 0.2;          // left free between a tooth and what it holds, mm
+  double penetration = 0.1;  // where nothing is left free: by how much a tip is within what it holds, mm
+  double embedded = 0.9;     // how deep a tooth goes into the body, mm
+  double least_height =
+      0.1;  // a lower tooth is none, mm; on the plate, where layers begin, 0.6 of that will do
 
   // No part of a tooth is nearer to the model, mm; across a slope the gap is narrower than along up.
   double least_distance() const { return 0.4 * gap; }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <utility>
 
 #include "core/error.h"
@@ -67,6 +68,46 @@ TEST(MakeSupports, RidgesLeaveNoCeilingFarFromThem) {
   EXPECT_GT(facts.body_distance, 0.75);
   ASSERT_TRUE(facts.footing_margin);
   EXPECT_GT(*facts.footing_margin, 1);
+}
+
+Mesh turned_about_z(Mesh mesh, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180;
+  for (Vec3f& p : mesh.positions) {
+    const Vec3d at = to_double(p);
+    p = to_float({std::cos(angle) * at.x - std::sin(angle) * at.y,
+                  std::sin(angle) * at.x + std::cos(angle) * at.y, at.z});
+  }
+  return mesh;
+}
+
+TEST(MakeSupports, ABridgeThatIsTurnedTakesNoMore) {
+  Supported straight(tee());
+  straight.make();
+  const SupportFacts least = straight.check(straight.mesh());
+  for (const double degrees : {10.0, 30.0, 45.0, 100.0}) {
+    Supported made(turned_about_z(tee(), degrees));
+    made.make();
+    const SupportFacts facts = made.check(made.mesh());
+    EXPECT_EQ(facts.unsupported_area, 0) << degrees;
+    EXPECT_LT(facts.contact_area, 1.1 * least.contact_area) << degrees;
+    EXPECT_LT(made.supports.tip_area, 1.1 * straight.supports.tip_area) << degrees;
+    EXPECT_LT(facts.volume, 1.1 * least.volume) << degrees;
+  }
+}
+
+// A plate of 30 x 30 mm that nears the plate of the printer from 1 to 0 mm along x, and a wall at its low end.
+TEST(MakeSupports, WhatNearlyLiesOnThePlateIsHeldByItOrByTeeth) {
+  Mesh wedge = make_box({0, 0, 0}, {30, 30, 10});
+  for (Vec3f& p : wedge.positions)
+    if (p.z == 0) p.z = p.x / 30;
+  Supported made(wedge);
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_EQ(facts.unsupported_area, 0);
+  // What is less than a gap and half a layer above the plate needs none, and what is just above that has some.
+  const auto first = static_cast<double>(bounding_box(made.supports.teeth).lower.x);
+  EXPECT_GT(first, 0.3 * 30);
+  EXPECT_LT(first, 0.3 * 30 + made.rules.reach + made.undersides.spacing);
 }
 
 TEST(MakeSupports, AreClosedAndStandOnThePlate) {
