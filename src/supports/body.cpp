@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <set>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -218,6 +219,108 @@ Mesh without_crumbs(const Mesh& mesh) {
   return submesh(mesh, kept);
 }
 
+// Pixels that hang beside a model: nothing of the layer below is near them, nor is the plate, or the model where a foot could stand. Those that
+// others of their layer hold within `reach` pixels stay.
+class HangingParts {
+ public:
+  HangingParts(const Undersides& columns, double clearance, double reach)
+      : columns_(columns),
+        clearance_(clearance),
+        reach_(static_cast<int>(reach)),
+        empty_(columns.count_x, columns.count_y),
+        below_(empty_) {}
+
+  // Of the layers from the plate up: takes away what hangs.
+  void take_from(Pixels& layer, std::size_t number) {
+    const double z = columns_.plate + (static_cast<double>(number) + 0.5) * columns_.spacing;
+    const std::vector<float> near = below_.squared_distances(true, 1);
+    Pixels held = empty_;
+    for (std::size_t i = 0; i < layer.size(); ++i)
+      if (layer[i] != 0 && (number == 0 || near[i] <= 2 || is_above_model(i, z))) held[i] = 1;
+    Pixels kept = held;
+    for (int step = 0; step < reach_; ++step) {
+      const std::vector<float> beside = kept.squared_distances(true, 1);
+      bool is_any = false;
+      for (std::size_t i = 0; i < layer.size(); ++i) {
+        if (layer[i] == 0 || kept[i] != 0 || beside[i] > 1) continue;
+        kept[i] = 1;
+        is_any = true;
+      }
+      if (!is_any) break;
+    }
+    layer = kept;
+    below_ = kept;
+  }
+
+ private:
+  bool is_above_model(std::size_t column, double z) const {
+    constexpr double kHighest = 1.6;  // clearances, as above a slope of 50 degrees
+    for (std::uint32_t i = columns_.first[column]; i < columns_.first[column + 1]; ++i) {
+      const AirSpan& span = columns_.spans[i];
+      if (span.floor < z && z < span.ceiling)
+        return z - span.floor < kHighest * clearance_ + columns_.spacing;
+    }
+    return false;
+  }
+
+  const Undersides& columns_;
+  double clearance_;
+  int reach_;
+  Pixels empty_, below_;
+};
+
+// Takes away what is about features that pass between columns, where a voxel is as good as on the surface.
+void keep_clear_of_surface(std::vector<std::array<int, 3>>& voxels, const Undersides& columns,
+                           const SurfaceIndex& model, double clearance) {
+  const double on_surface = 0.6 * columns.spacing;
+  std::vector<std::uint8_t> is_on(voxels.size(), 0);
+  tbb::parallel_for(std::size_t{0}, voxels.size(), [&](std::size_t i) {
+    const auto& [x, y, layer] = voxels[i];
+    const Vec3d at{columns.origin_x + columns.spacing * x, columns.origin_y + columns.spacing * y,
+                   columns.plate + (layer + 0.5) * columns.spacing};
+    const double limit = on_surface * on_surface;
+    is_on[i] = model.bvh().nearest(at, limit).distance_squared < limit ? 1 : 0;
+  });
+  const std::vector<std::pair<int, int>> disc = disc_of(clearance / columns.spacing);
+  std::set<std::array<int, 3>> taken;
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    if (is_on[i] == 0) continue;
+    for (const auto& [dx, dy] : disc) taken.insert({voxels[i][0] + dx, voxels[i][1] + dy, voxels[i][2]});
+  }
+  if (!taken.empty())
+    std::erase_if(voxels, [&](const std::array<int, 3>& voxel) { return taken.contains(voxel); });
+}
+
+std::vector<std::array<int, 3>> without_hanging(const std::vector<std::array<int, 3>>& voxels,
+                                                const Undersides& columns, const BodyShape& shape,
+                                                double reach) {
+  HangingParts parts(columns, shape.clearance, reach / columns.spacing);
+  const Pixels empty(columns.count_x, columns.count_y);
+  std::vector<std::array<int, 3>> kept;
+  kept.reserve(voxels.size());
+  int next = 0;
+  // From the lowest layer up; voxels come from the highest down.
+  for (std::size_t end = voxels.size(); end > 0;) {
+    const int layer = voxels[end - 1][2];
+    std::size_t begin = end;
+    while (begin > 0 && voxels[begin - 1][2] == layer) --begin;
+    Pixels pixels = empty;
+    for (; next < layer; ++next) parts.take_from(pixels, static_cast<std::size_t>(next));
+    for (std::size_t i = begin; i < end; ++i)
+      pixels[columns.column(static_cast<std::uint32_t>(voxels[i][0]),
+                            static_cast<std::uint32_t>(voxels[i][1]))] = 1;
+    parts.take_from(pixels, static_cast<std::size_t>(layer));
+    next = layer + 1;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (pixels[columns.column(static_cast<std::uint32_t>(voxels[i][0]),
+                                static_cast<std::uint32_t>(voxels[i][1]))] != 0)
+        kept.push_back(voxels[i]);
+    }
+    end = begin;
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::vector<std::array<int, 3>> body_voxels(const Undersides& columns,
@@ -237,6 +340,9 @@ std::vector<std::array<int, 3>> body_voxels(const Undersides& columns,
         columns.column(static_cast<std::uint32_t>(std::lround((place.x - columns.origin_x) / size)),
                        static_cast<std::uint32_t>(std::lround((place.y - columns.origin_y) / size))));
   }
+  // So that what bears a single tooth is no thinner than voxels show.
+  const std::vector<std::pair<int, int>> margin =
+      disc_of(std::max(shape.margin / size, std::numbers::sqrt2 + 0.01));
   std::vector<std::array<int, 3>> voxels;
   Pixels body = empty;
   std::vector<float> top(body.size(), 0);  // layer in which the body of a column begins
@@ -256,17 +362,13 @@ std::vector<std::array<int, 3>> body_voxels(const Undersides& columns,
     body = layer < kFootLayers ? widened(body, empty, height / (2 * kSlender))
                                : drawn_in(body, empty, half, layer % 3 == 0);
     for (const std::size_t column : begins[layer]) {
-      // A margin round what is carried, so that what bears a single tooth is no thinner than voxels show.
       const auto x = static_cast<int>(column % columns.count_x),
                  y = static_cast<int>(column / columns.count_x);
-      for (int dy = -2; dy <= 2; ++dy) {
-        for (int dx = -2; dx <= 2; ++dx) {
-          if (dx * dx + dy * dy > 5) continue;
-          const std::size_t i =
-              columns.column(static_cast<std::uint32_t>(x + dx), static_cast<std::uint32_t>(y + dy));
-          if (body[i] == 0) top[i] = static_cast<float>(layer);
-          body[i] = 1;
-        }
+      for (const auto& [dx, dy] : margin) {
+        const std::size_t i =
+            columns.column(static_cast<std::uint32_t>(x + dx), static_cast<std::uint32_t>(y + dy));
+        if (body[i] == 0) top[i] = static_cast<float>(layer);
+        body[i] = 1;
       }
     }
     keep_clear_of_model(body, columns, z, shape.clearance);
@@ -296,6 +398,8 @@ Mesh support_body(const SurfaceIndex& model, const Undersides& undersides, const
   const Undersides& columns = is_fine ? coarser : undersides;
   const double size = columns.spacing;
   std::vector<std::array<int, 3>> voxels = body_voxels(columns, carried, shape, monitor);
+  keep_clear_of_surface(voxels, columns, model, shape.clearance);
+  voxels = without_hanging(voxels, columns, shape, teeth.reach);
   if (voxels.empty()) return {};
   const std::size_t above = voxels.size();
   for (std::size_t i = 0; i < above; ++i) {

@@ -148,6 +148,7 @@ TeethPlan plan_teeth(const Undersides& columns, const SupportRules& rules, Tooth
   const auto pieces = overhanging_pieces(columns, own, rules.reach);
   TeethPlan plan;
   plan.kind = kind;
+  plan.reach = rules.reach;
   std::vector<std::uint8_t> is_held(columns.spans.size(), 0), is_carried(columns.spans.size(), 0);
   for (const std::vector<std::uint32_t>& piece : pieces)
     for (const std::uint32_t span : piece) is_carried[span] = own[span] > kCloseToHold * rules.reach ? 1 : 0;

@@ -14,6 +14,7 @@ enum class ToothKind { ridge, cone };
 
 struct TeethPlan {
   ToothKind kind = ToothKind::ridge;
+  double reach = 0;                 // of the process, mm
   std::vector<std::uint32_t> held;  // spans with a tooth under their ceilings, ascending
   std::vector<RidgeRun> runs;       // these as ridges, if that is what they are
   std::vector<std::uint32_t>

@@ -20,6 +20,8 @@ constexpr double kConeSlope = 0.35, kWidestBase = 2.5;
 constexpr double kNarrowTip = 0.6;
 // A flat tip below a point is farther from it at its middle; no more than so many gaps.
 constexpr double kMostGap = 1.25;
+// And a foot below one of its rims, beside what it would stand on.
+constexpr double kMostBeside = 2;
 // The share of the least height that is enough on the plate, where layers begin.
 constexpr double kLeastShareOnPlate = 0.6;
 
@@ -290,7 +292,9 @@ Vec3d lowest_near(const Heights& heights, Vec3d at, double spacing, double off) 
       }
     }
   }
-  return lowest;
+  // Under the column itself, which is what begins in the air.
+  return {std::clamp(lowest.x, at.x - spacing / 2, at.x + spacing / 2),
+          std::clamp(lowest.y, at.y - spacing / 2, at.y + spacing / 2), lowest.z};
 }
 
 // How wide a cone may be: its base in tips, and its tip in those asked for.
@@ -310,7 +314,10 @@ bool add_cone_at(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersid
                        : columns.place(span);
   const double radius = widths.tip * shape.width / 2;
   Extent z = heights.extent(at.x, at.y, at.z, columns.spacing);
+  const double foot = z.lower;
   if (shape.gap > 0) keep_below_rim(heights, at, radius, columns.spacing, tip_is_above, z);
+  // A foot beside what it would stand on.
+  if (shape.gap > 0 && !tip_is_above && z.lower - foot > kMostBeside * shape.gap) return false;
   if (!is_high_enough(z, columns.plate, shape)) return false;
   if (shape.gap > 0 && tip_is_above && at.z - z.upper > kMostGap * shape.gap) return false;
   const double base = std::min(radius + kConeSlope * (z.upper - z.lower), widths.widest_base * radius);
@@ -324,6 +331,63 @@ bool add_cone_at(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersid
   return true;
 }
 
+// A cone under a span, as wide as there is room for.
+template <typename Heights>
+bool add_widest_cone(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& columns,
+                     std::uint32_t span, const Heights& heights, const ToothShape& shape, bool tip_is_above) {
+  constexpr std::array<ConeWidths, 4> kWidths{
+      {{kWidestBase, 1}, {1, 1}, {1, kNarrowTip}, {1, kNarrowTip * kNarrowTip}}};
+  return std::ranges::any_of(kWidths, [&](ConeWidths widths) {
+    return add_cone_at(teeth, model, columns, span, heights, shape, widths, tip_is_above);
+  });
+}
+
+// Spans no more than so many columns from one, the nearest first, itself the first.
+std::vector<std::uint32_t> spans_near(const Undersides& columns, std::uint32_t span, std::size_t rings) {
+  std::vector<std::uint32_t> near{span};
+  std::size_t first = 0;
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    const std::size_t end = near.size();
+    for (std::size_t i = first; i < end; ++i) {
+      for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(0, 1), std::pair(-1, 0), std::pair(0, -1)}) {
+        const std::uint32_t other = columns.next(near[i], dx, dy);
+        if (other != kNoSpan && std::ranges::find(near, other) == near.end()) near.push_back(other);
+      }
+    }
+    first = end;
+  }
+  return near;
+}
+
+// Cones where those that were planned have no room, beside these places.
+template <typename Heights>
+void add_beside(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& columns,
+                const Heights& heights, const ToothShape& shape, double reach, bool tip_is_above,
+                const std::vector<bool>& is_made) {
+  constexpr std::size_t kRings = 3;
+  std::vector<Holder> made;
+  for (std::uint32_t i = 0; i < columns.spans.size(); ++i)
+    if (is_made[i]) made.push_back(holder_in(columns, i));
+  std::vector<double> distances = distances_from_hold(columns, made);
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t i = 0; i < columns.spans.size(); ++i)
+    if (columns.hold[i] == Hold::bridge && distances[i] > reach) left.push_back(i);
+  // The farthest first, and of those that nothing holds the lowest.
+  std::ranges::stable_sort(left, [&](std::uint32_t a, std::uint32_t b) {
+    return distances[a] != distances[b] ? distances[a] > distances[b]
+                                        : columns.spans[a].ceiling < columns.spans[b].ceiling;
+  });
+  for (const std::uint32_t span : left) {
+    if (distances[span] <= reach) continue;
+    for (const std::uint32_t other : spans_near(columns, span, kRings)) {
+      if (!add_widest_cone(teeth, model, columns, other, heights, shape, tip_is_above)) continue;
+      hold_also(columns, {holder_in(columns, other)}, distances);
+      break;
+    }
+    if (distances[span] > reach) teeth.left.push_back(span);
+  }
+}
+
 template <typename Heights>
 ToothSurfaces teeth_of(const SurfaceIndex& model, const Undersides& columns, const TeethPlan& plan,
                        const Heights& heights, const ToothShape& shape, bool tip_is_above) {
@@ -332,14 +396,10 @@ ToothSurfaces teeth_of(const SurfaceIndex& model, const Undersides& columns, con
   std::vector<bool> is_made(columns.spans.size(), false);
   for (const RidgeRun& run : plan.runs) add_run(teeth, model, columns, run, heights, shape, is_made);
   for (const std::uint32_t span : plan.held) {
-    if (is_made[span]) continue;
-    const bool is_there =
-        add_cone_at(teeth, model, columns, span, heights, shape, {kWidestBase, 1}, tip_is_above) ||
-        add_cone_at(teeth, model, columns, span, heights, shape, {1, 1}, tip_is_above) ||
-        add_cone_at(teeth, model, columns, span, heights, shape, {1, kNarrowTip}, tip_is_above) ||
-        add_cone_at(teeth, model, columns, span, heights, shape, {1, kNarrowTip * kNarrowTip}, tip_is_above);
-    if (!is_there) ++teeth.no_room;
+    if (!is_made[span])
+      is_made[span] = add_widest_cone(teeth, model, columns, span, heights, shape, tip_is_above);
   }
+  add_beside(teeth, model, columns, heights, shape, plan.reach, tip_is_above, is_made);
   return teeth;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "core/mesh.h"
 #include "core/surface_index.h"
@@ -26,9 +28,10 @@ struct ToothShape {
 // Closed shells, outward, each on its own; they run into the body and into each other.
 struct ToothSurfaces {
   Mesh mesh;
-  std::size_t count = 0;    // of teeth: runs of ridges, or cones
-  double tip_area = 0;      // seen along up, mm2; ridges that cross count twice
-  std::size_t no_room = 0;  // columns of teeth for which there is no room
+  std::size_t count = 0;  // of teeth: runs of ridges, or cones
+  double tip_area = 0;    // seen along up, mm2; ridges that cross count twice
+  std::vector<std::uint32_t>
+      left;  // spans farther from what holds them than the reach, near which no tooth has room
 };
 
 // From the body, or from what is below where there is none, to the ceilings of the model. `body`: null if there is none

@@ -161,6 +161,18 @@ TEST(MakeSupports, FineVoxelsKeepTheClearanceAboveAFloor) {
   EXPECT_EQ(facts.own_unsupported_area.value_or(-1), 0);
 }
 
+TEST(MakeSupports, KeepTheirClearanceFromFeaturesThinnerThanVoxels) {
+  // A post and a fin of 0.15 mm below the beam, where columns do not see them.
+  Mesh mesh = join(tee(), make_box({45.1F, 9.9F, 0}, {45.25F, 10.05F, 30}));
+  mesh = join(mesh, make_box({5, 8, 12}, {20, 8.15F, 30}));
+  for (const char* process : {"fdm", "metal"}) {
+    Supported made(mesh, process);
+    made.make();
+    const SupportFacts facts = made.check(made.mesh());
+    EXPECT_GE(facts.body_distance, 0.75) << process;
+  }
+}
+
 TEST(MakeSupports, APointThatBeginsInTheAirGetsATooth) {
   Mesh spike;
   spike.positions = {{20, 5, 5}, {15, 0, 15}, {25, 0, 15}, {25, 10, 15}, {15, 10, 15}};
@@ -190,7 +202,8 @@ TEST(MakeSupports, TheBunnyUpsideDownStandsOnThePlate) {
   Supported made(turned);
   made.make();
   const SupportFacts facts = made.check(made.mesh());
-  EXPECT_LT(facts.unsupported_area, 2);
+  EXPECT_LT(facts.unsupported_area, 0.5);
+  EXPECT_LT(facts.own_unsupported_area.value_or(kInfinity), 1);
   EXPECT_GE(bounding_box(made.mesh()).lower.z, -1e-4F);
 }
 
@@ -234,6 +247,12 @@ TEST_F(CheckSupports, RefuseOnesBelowThePlate) {
   Mesh low = made.mesh();
   for (Vec3f& p : low.positions) p.z -= 1;
   EXPECT_TRUE(contains(refusal(low), "below the plate"));
+}
+
+TEST_F(CheckSupports, RefuseABodyThatIsALittleTooNear) {
+  Mesh near = made.mesh();
+  for (Vec3f& p : near.positions) p.z += 0.5F;  // 0.7 mm below the beam
+  EXPECT_TRUE(contains(refusal(near), "0.8 mm were asked for"));
 }
 
 TEST_F(CheckSupports, RefuseABodyThatIsTooNear) {
