@@ -175,14 +175,15 @@ LevelSet LevelSet::of_voxels(std::span<const std::array<int, 3>> voxels, double 
   return LevelSet(std::make_unique<Grid>(Grid{std::move(grid)}));
 }
 
-LevelSet LevelSet::without(const std::function<double(Vec3d)>& taken) const {
+LevelSet LevelSet::without(const std::function<double(Vec3d, double)>& taken) const {
   auto grid = grid_->values->deepCopy();
   const double size = grid->voxelSize()[0];
   openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid->tree());
   leaves.foreach ([&](Leaf& leaf, std::size_t) {
     for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
       const openvdb::Coord at = voxel.getCoord();
-      const auto least = static_cast<float>(taken({at.x() * size, at.y() * size, at.z() * size}));
+      const auto least = static_cast<float>(
+          taken({at.x() * size, at.y() * size, at.z() * size}, static_cast<double>(*voxel)));
       if (least > *voxel) voxel.setValue(least);
     }
   });

@@ -41,9 +41,9 @@ class LevelSet {
   LevelSet(LevelSet&&) noexcept;
   LevelSet& operator=(LevelSet&&) noexcept;
 
-  // This without what is nearer to its surface than three voxels and where `taken` is positive: a distance, mm, as far as that is less
-  // than three voxels. Called from all threads.
-  LevelSet without(const std::function<double(Vec3d)>& taken) const;
+  // This without what is nearer to its surface than three voxels and where `taken` is positive: a distance, mm, at a place, as far as that is
+  // more than what is given beside it and less than three voxels. Called from all threads.
+  LevelSet without(const std::function<double(Vec3d, double)>& taken) const;
 
   // This without what is inside `other`. Precondition: both have the same voxel size.
   LevelSet minus(const LevelSet& other) const;

@@ -76,7 +76,7 @@ double plate_for(const SupportOptions& options, const Mesh& upright) {
 }
 
 // Points between folds of a surface: of a real model few are left.
-constexpr double kMostLeft = 2;  // mm2
+constexpr double kMostLeft = 1;  // mm2
 
 [[noreturn]] void refuse_unreached(const SupportFacts& facts, const Supports& supports,
                                    const SupportRules& rules, const SupportShape& shape,

@@ -11,10 +11,14 @@
 
 namespace aerate {
 
+// How much less than its clearance a body may keep, mm.
+inline constexpr double kClearanceTolerance = 0.05;
+
 struct BodyShape {
   double clearance = 0.8;     // between the body and the model, mm
   double tooth_height = 1.2;  // between the body and the ceilings that its teeth reach to, mm
   double foot = 2;            // half the width that it is not drawn in below, and its foot, mm
+  double margin = 1.05;       // round what it carries, at its top, mm
 };
 
 // The supports without their teeth: from below what they carry to the plate, or onto the model where that is in the way. On the way
@@ -24,8 +28,15 @@ struct BodyShape {
 Mesh support_body(const SurfaceIndex& model, const Undersides& undersides, const TeethPlan& teeth,
                   const BodyShape& shape, Monitor& monitor);
 
+// Where something is carried, mm: from its ceiling to what is below.
+struct CarriedPlace {
+  double x, y;
+  double ceiling, floor;
+};
+
 // The same as voxels: coordinates in columns, and in layers as high as a column is wide, from the plate up.
-std::vector<std::array<int, 3>> body_voxels(const Undersides& undersides, const TeethPlan& teeth,
-                                            const BodyShape& shape, Monitor& monitor);
+std::vector<std::array<int, 3>> body_voxels(const Undersides& columns,
+                                            const std::vector<CarriedPlace>& carried, const BodyShape& shape,
+                                            Monitor& monitor);
 
 }  // namespace aerate

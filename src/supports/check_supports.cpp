@@ -25,8 +25,8 @@ namespace {
 constexpr double kColumnsOff = 1.5;
 // What of supports' own underside may be held by nothing: corners that smoothing leaves, mm2.
 constexpr double kMostOwn = 10;
-// What voxels show of the clearance at features thinner than they.
-constexpr double kLeastClearance = 0.5;
+// Of coordinates in a file, mm.
+constexpr double kRounding = 1e-3;
 
 double least_distance(const Mesh& mesh, std::size_t first, std::size_t end, const SurfaceIndex& model,
                       double limit) {
@@ -51,7 +51,6 @@ void require_sound(const Mesh& mesh, bool has_voids) {
 }
 
 void require_above_plate(const Mesh& mesh, double plate) {
-  constexpr double kRounding = 1e-3;
   for (const Vec3f& p : mesh.positions) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !(static_cast<double>(p.z) >= plate - kRounding))
       fail_check("it reaches below the plate, to ({:.2f}, {:.2f}, {:.2f}) mm", p.x, p.y, p.z);
@@ -76,6 +75,19 @@ double ceiling_near(const kernels::WindingView& model, double x, double y, doubl
     nearest = std::abs(span.ceiling - z);
   }
   return best;
+}
+
+// Whether something of a solid, given by its spans at a place, is so near below the model there, whose ceiling is about at `z`.
+bool is_touched(const kernels::WindingView& model, double x, double y, double z, double nearest,
+                const std::vector<AirSpan>& solid, double within) {
+  std::optional<double> ceiling;
+  for (std::size_t k = 0; k + 1 < solid.size(); ++k) {
+    const double bottom = solid[k].ceiling, top = solid[k + 1].floor;
+    if (bottom >= z || top < z - nearest - within) continue;
+    if (!ceiling) ceiling = ceiling_near(model, x, y, z, nearest);
+    if (top >= *ceiling - within) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -103,34 +115,41 @@ void measure_contact(const kernels::WindingView& solid, const kernels::WindingVi
   constexpr int kSamples = 3;  // of a column, along each side
   const std::size_t count = columns.spans.size();
   std::vector<std::uint8_t> touched(count, 0);  // samples of each column
-  std::vector<std::uint8_t> is_held(count, 0);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    if (columns.hold[i] == Hold::none) return;
-    const Vec3d at = columns.place(static_cast<std::uint32_t>(i));
-    if (at.z <= columns.plate + within) return;
-    const auto is_near = [&](double x, double y) {
-      const double ceiling = ceiling_near(model, x, y, at.z, 2 * columns.spacing);
-      const std::vector<AirSpan> spans = air_spans_at(solid, x, y);
-      for (std::size_t k = 0; k + 1 < spans.size(); ++k) {
-        const double bottom = spans[k].ceiling, top = spans[k + 1].floor;
-        if (bottom < at.z && top >= ceiling - within) return true;
-      }
-      return false;
+  tbb::parallel_for(std::size_t{0}, columns.first.size() - 1, [&](std::size_t column) {
+    const std::uint32_t first = columns.first[column], end = columns.first[column + 1];
+    const auto is_ceiling = [&](std::uint32_t i) {
+      return columns.hold[i] != Hold::none && columns.spans[i].ceiling > columns.plate + within;
     };
+    bool is_any = false;
+    for (std::uint32_t i = first; i < end; ++i) is_any = is_any || is_ceiling(i);
+    if (!is_any) return;
+    const double middle_x = columns.x_at(static_cast<std::uint32_t>(column % columns.count_x));
+    const double middle_y = columns.y_at(static_cast<std::uint32_t>(column / columns.count_x));
     for (int sx = 0; sx < kSamples; ++sx) {
       for (int sy = 0; sy < kSamples; ++sy) {
-        const double off_x = ((sx + 0.5) / kSamples - 0.5) * columns.spacing;
-        const double off_y = ((sy + 0.5) / kSamples - 0.5) * columns.spacing;
-        touched[i] = static_cast<std::uint8_t>(touched[i] + (is_near(at.x + off_x, at.y + off_y) ? 1 : 0));
+        const double x = middle_x + ((sx + 0.5) / kSamples - 0.5) * columns.spacing;
+        const double y = middle_y + ((sy + 0.5) / kSamples - 0.5) * columns.spacing;
+        const std::vector<AirSpan> spans = air_spans_at(solid, x, y);
+        for (std::uint32_t i = first; i < end; ++i) {
+          if (is_ceiling(i) &&
+              is_touched(model, x, y, columns.spans[i].ceiling, 2 * columns.spacing, spans, within))
+            ++touched[i];
+        }
       }
     }
-    is_held[i] = touched[i] > 0 ? 1 : 0;
   });
-  std::vector<std::uint32_t> held;
+  std::vector<std::uint8_t> is_held(count, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    // The plate is as near as supports would be.
+    const bool is_on_plate =
+        columns.hold[i] != Hold::none && columns.spans[i].ceiling <= columns.plate + within;
+    is_held[i] = touched[i] > 0 || is_on_plate ? 1 : 0;
+  }
+  std::vector<Holder> held;
   facts.contact_area = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     facts.contact_area += columns.area() * touched[i] / (kSamples * kSamples);
-    if (is_held[i] != 0) held.push_back(i);
+    if (is_held[i] != 0) held.push_back(holder_in(columns, i));
   }
   const std::vector<double> distances = distances_from_hold(columns, held);
   facts.farthest = 0;
@@ -165,7 +184,7 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
     require_outside(written, body, model.winding(), "the body");
     facts.volume = volume_moments(written, body, Vec3d{0, 0, columns.plate}).volume;
     facts.body_distance = least_distance(written, 0, body_triangles, model, limit);
-    if (facts.body_distance < kLeastClearance * shape.body.clearance)
+    if (facts.body_distance < shape.body.clearance - kClearanceTolerance - kRounding)
       fail_check("the body is {:.3g} mm from the model, {:.3g} mm were asked for", facts.body_distance,
                  shape.body.clearance);
     facts.footing_margin = least_footing_margin(written, body, columns.plate);

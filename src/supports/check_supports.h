@@ -30,7 +30,7 @@ struct SupportFacts {
 
 //   written: the supports, upright, of whose triangles the first `body_triangles` are the body, which has voids or none
 // Throws FailureError for what is not as it has to be: open or turned surfaces, a body in the model or nearer to it than
-// half its clearance, teeth in the model where a gap was asked for, bodies with a gap above that tip over. What is farther from a
+// its clearance but for kClearanceTolerance, teeth in the model where a gap was asked for, bodies with a gap above that tip over. What is farther from a
 // tooth than the reach is told, and no fault.
 SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, const SurfaceIndex& model,
                             const Undersides& undersides, const SupportRules& rules,

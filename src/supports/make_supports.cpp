@@ -16,7 +16,7 @@ SupportShape usual_shape(const SupportRules& rules) {
     shape.tooth = {.width = 0.5, .gap = 0.2, .penetration = 0, .embedded = 0.9, .least_height = 0.18};
   } else {
     shape.kind = ToothKind::cone;
-    shape.body = {.clearance = 0.8, .tooth_height = 1.2, .foot = 2};
+    shape.body = {.clearance = 0.8, .tooth_height = 1.2, .foot = 2, .margin = 0.6};
     shape.tooth = {.width = 0.4, .gap = 0, .penetration = 0.1, .embedded = 0.9, .least_height = 0.045};
   }
   return shape;
@@ -41,7 +41,7 @@ Supports make_supports(const SurfaceIndex& model, const Undersides& columns, con
   supports.teeth = above.mesh;
   supports.tooth_count = above.count;
   supports.tip_area = above.tip_area;
-  supports.no_room = above.no_room;
+  supports.no_room = above.left.size();
   monitor.check_interrupted();
   if (!body) return supports;
   // The body's own underside is held where it leans by no more than the angle, and by teeth on the model else.

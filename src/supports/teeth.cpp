@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <queue>
-#include <unordered_map>
 #include <utility>
 
 #include "core/disjoint_sets.h"
@@ -53,81 +52,6 @@ std::vector<std::vector<std::uint32_t>> overhanging_pieces(const Undersides& col
   return pieces;
 }
 
-// Parallel lines through a piece.
-struct Lines {
-  bool along_x = true;
-  std::uint32_t phase = 0;
-};
-
-class LineChoice {
- public:
-  LineChoice(const Undersides& columns, const std::vector<std::uint32_t>& piece,
-             const std::vector<double>& distances, double reach)
-      : columns_(columns),
-        piece_(piece),
-        distances_(distances),
-        reach_(reach),
-        pitch_(std::max(1U, static_cast<std::uint32_t>(2 * reach / columns.spacing))) {
-    at_.reserve(piece.size());
-    for (const std::uint32_t span : piece) at_[key(columns.x_of(span), columns.y_of(span))] = span;
-  }
-
-  bool is_on(Lines lines, std::uint32_t span) const {
-    return across(lines, span) % pitch_ == lines.phase && distances_[span] > kCloseToHold * reach_;
-  }
-
-  Lines best() const {
-    Lines best;
-    double least = kInfinity;
-    for (const bool along_x : {false, true}) {
-      for (std::uint32_t phase = 0; phase < pitch_; ++phase) {
-        const double cost = cost_of({along_x, phase});
-        if (cost < least) {
-          least = cost;
-          best = {along_x, phase};
-        }
-      }
-    }
-    return best;
-  }
-
- private:
-  static std::uint64_t key(std::int64_t x, std::int64_t y) {
-    return (static_cast<std::uint64_t>(x) << 32) | static_cast<std::uint32_t>(y);
-  }
-  std::uint32_t across(Lines lines, std::uint32_t span) const {
-    return lines.along_x ? columns_.y_of(span) : columns_.x_of(span);
-  }
-  // Columns with a ridge, and what would have to be held besides.
-  double cost_of(Lines lines) const {
-    constexpr double kMissed = 0.5;  // columns of ridge for each that lines miss
-    double cost = 0;
-    for (const std::uint32_t span : piece_) {
-      if (is_on(lines, span)) ++cost;
-      if (distances_[span] > reach_ && !is_near(lines, span)) cost += kMissed;
-    }
-    return cost;
-  }
-  bool is_near(Lines lines, std::uint32_t span) const {
-    const std::int64_t here = across(lines, span);
-    const std::int64_t off = (here % pitch_ + pitch_ - lines.phase) % pitch_;
-    const std::int64_t along = lines.along_x ? columns_.x_of(span) : columns_.y_of(span);
-    const auto half = static_cast<std::int64_t>(reach_ / columns_.spacing);
-    for (const std::int64_t line : {here - off, here - off + pitch_}) {
-      if (std::abs(line - here) > half) continue;
-      if (at_.contains(lines.along_x ? key(along, line) : key(line, along))) return true;
-    }
-    return false;
-  }
-
-  const Undersides& columns_;
-  const std::vector<std::uint32_t>& piece_;
-  const std::vector<double>& distances_;
-  double reach_;
-  std::uint32_t pitch_;
-  std::unordered_map<std::uint64_t, std::uint32_t> at_;
-};
-
 // The ceiling ends in the air there.
 bool is_free_edge(const Undersides& columns, std::uint32_t span) {
   const double above = columns.spans[span].ceiling + 0.1 * columns.spacing;
@@ -155,7 +79,7 @@ void hold_what_is_left(const Undersides& columns, double reach, std::vector<doub
                        std::vector<std::uint8_t>& is_held) {
   const auto hold = [&](std::uint32_t span) {
     is_held[span] = 1;
-    hold_also(columns, span, kInfinity, distances);
+    hold_also(columns, {holder_in(columns, span)}, distances);
   };
   std::vector<std::uint32_t> tips = columns.tips;
   std::ranges::stable_sort(tips, [&](std::uint32_t a, std::uint32_t b) {
@@ -182,36 +106,39 @@ void hold_what_is_left(const Undersides& columns, double reach, std::vector<doub
   }
 }
 
-// Rows along the way that most of a column's neighbours are on; each column in one row, and in another where rows meet.
-std::vector<RidgeRun> runs_of(const Undersides& columns, const std::vector<std::uint8_t>& is_held) {
-  const auto neighbour = [&](std::uint32_t span, bool along_x, int by) -> std::uint32_t {
-    const std::uint32_t other = columns.next(span, along_x ? by : 0, along_x ? 0 : by);
-    if (other == kNoSpan || is_held[other] == 0) return kNoSpan;
-    return other;
-  };
+std::vector<Holder> holders_of(const std::vector<RidgeRun>& runs) {
+  std::vector<Holder> holders;
+  for (const RidgeRun& run : runs)
+    for (const RidgePoint& p : run.points) holders.push_back({p.span, p.x, p.y});
+  return holders;
+}
+
+struct PlannedRidges {
   std::vector<RidgeRun> runs;
-  for (const bool along_x : {true, false}) {
-    std::vector<std::uint8_t> is_done(columns.spans.size(), 0);
-    for (std::uint32_t i = 0; i < columns.spans.size(); ++i) {
-      if (is_held[i] == 0 || is_done[i] != 0) continue;
-      std::uint32_t begin = i;
-      for (std::uint32_t before = neighbour(begin, along_x, -1); before != kNoSpan && is_done[before] == 0;
-           before = neighbour(begin, along_x, -1)) {
-        begin = before;
-        if (begin == i) break;
-      }
-      RidgeRun run{{}, along_x};
-      for (std::uint32_t at = begin; at != kNoSpan && is_done[at] == 0; at = neighbour(at, along_x, 1)) {
-        is_done[at] = 1;
-        run.spans.push_back(at);
-      }
-      const bool is_alone = run.spans.size() == 1;
-      const bool has_other_way =
-          neighbour(begin, !along_x, 1) != kNoSpan || neighbour(begin, !along_x, -1) != kNoSpan;
-      if (!is_alone || (along_x && !has_other_way)) runs.push_back(std::move(run));
-    }
+  std::vector<double> distances;  // by span, mm
+};
+
+// `pieces`: of underside, and their distances from what holds them by itself
+PlannedRidges plan_ridges(const Undersides& columns, const std::vector<std::vector<std::uint32_t>>& pieces,
+                          const std::vector<double>& own, double reach) {
+  const double close = kCloseToHold * reach;
+  PlannedRidges planned{{}, own};
+  std::vector<std::vector<RidgeRun>> edges(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    std::vector<std::uint32_t> at_edge;
+    for (const std::uint32_t span : pieces[i])
+      if (own[span] > close && is_free_edge(columns, span)) at_edge.push_back(span);
+    edges[i] = edge_ridges(columns, at_edge);
+    hold_also(columns, holders_of(edges[i]), planned.distances);
   }
-  return runs;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const std::vector<RidgeRun> lines =
+        parallel_ridges(columns, pieces[i], edges[i], own, planned.distances, close, reach);
+    hold_also(columns, holders_of(lines), planned.distances);
+    for (const std::vector<RidgeRun>* runs : {&std::as_const(edges[i]), &lines})
+      planned.runs.insert(planned.runs.end(), runs->begin(), runs->end());
+  }
+  return planned;
 }
 
 }  // namespace
@@ -221,31 +148,29 @@ TeethPlan plan_teeth(const Undersides& columns, const SupportRules& rules, Tooth
   const auto pieces = overhanging_pieces(columns, own, rules.reach);
   TeethPlan plan;
   plan.kind = kind;
+  plan.reach = rules.reach;
   std::vector<std::uint8_t> is_held(columns.spans.size(), 0), is_carried(columns.spans.size(), 0);
-  for (const std::vector<std::uint32_t>& piece : pieces) {
+  for (const std::vector<std::uint32_t>& piece : pieces)
     for (const std::uint32_t span : piece) is_carried[span] = own[span] > kCloseToHold * rules.reach ? 1 : 0;
-    if (kind != ToothKind::ridge) continue;
-    const LineChoice choice(columns, piece, own, rules.reach);
-    const Lines lines = choice.best();
-    for (const std::uint32_t span : piece) {
-      const bool is_edge = own[span] > kCloseToHold * rules.reach && is_free_edge(columns, span);
-      if (is_edge || choice.is_on(lines, span)) is_held[span] = 1;
-    }
+  std::vector<double> distances = own;
+  if (kind == ToothKind::ridge) {
+    PlannedRidges planned = plan_ridges(columns, pieces, own, rules.reach);
+    plan.runs = std::move(planned.runs);
+    distances = std::move(planned.distances);
+    for (const RidgeRun& run : plan.runs)
+      for (const RidgePoint& p : run.points) is_held[p.span] = 1;
   }
-  std::vector<std::uint32_t> held;
+  std::vector<std::uint8_t> is_alone = is_held;
+  hold_what_is_left(columns, rules.reach, distances, is_alone);
   for (std::uint32_t i = 0; i < columns.spans.size(); ++i) {
-    if (is_held[i] != 0) held.push_back(i);
-  }
-  std::vector<double> distances = distances_from_hold(columns, held);
-  hold_what_is_left(columns, rules.reach, distances, is_held);
-  for (std::uint32_t i = 0; i < columns.spans.size(); ++i) {
-    if (is_held[i] != 0) {
+    if (is_alone[i] != 0) {
       plan.held.push_back(i);
       is_carried[i] = 1;
+      const Holder middle = holder_in(columns, i);
+      if (kind == ToothKind::ridge && is_held[i] == 0) plan.runs.push_back({{{middle.x, middle.y, i}}});
     }
     if (is_carried[i] != 0) plan.carried.push_back(i);
   }
-  if (kind == ToothKind::ridge) plan.runs = runs_of(columns, is_held);
   return plan;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "supports/ridges.h"
 #include "supports/support_rules.h"
 #include "supports/undersides.h"
 
@@ -11,14 +12,9 @@ namespace aerate {
 // Where supports touch what they hold.
 enum class ToothKind { ridge, cone };
 
-// Columns in a row under which a narrow ridge runs, along x or along y; one alone: a short one.
-struct RidgeRun {
-  std::vector<std::uint32_t> spans;
-  bool along_x = true;
-};
-
 struct TeethPlan {
   ToothKind kind = ToothKind::ridge;
+  double reach = 0;                 // of the process, mm
   std::vector<std::uint32_t> held;  // spans with a tooth under their ceilings, ascending
   std::vector<RidgeRun> runs;       // these as ridges, if that is what they are
   std::vector<std::uint32_t>
@@ -26,8 +22,8 @@ struct TeethPlan {
 };
 
 // Teeth so that no ceiling is farther from what holds it than the process's reach, and one under each place that begins in the
-// air. Ridges: in each overhang parallel ones no farther apart than twice the reach, the way and the phase that take the
-// least length, and under free edges; cones, and what ridges miss: always where it is farthest.
+// air. Ridges: in each overhang parallel ones no farther apart than twice the reach, and under free edges (supports/ridges.h); cones, and
+// what ridges miss: always where it is farthest.
 TeethPlan plan_teeth(const Undersides& undersides, const SupportRules& rules, ToothKind kind);
 
 }  // namespace aerate

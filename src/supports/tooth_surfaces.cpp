@@ -20,6 +20,10 @@ constexpr double kConeSlope = 0.35, kWidestBase = 2.5;
 constexpr double kNarrowTip = 0.6;
 // A flat tip below a point is farther from it at its middle; no more than so many gaps.
 constexpr double kMostGap = 1.25;
+// And a foot below one of its rims, beside what it would stand on.
+constexpr double kMostBeside = 2;
+// The share of the least height that is enough on the plate, where layers begin.
+constexpr double kLeastShareOnPlate = 0.6;
 
 // Heights between which a tooth is, at one place.
 struct Extent {
@@ -166,26 +170,54 @@ bool keeps_off(const Mesh& tooth, const SurfaceIndex& model, const ToothShape& s
   });
 }
 
+// A tooth is high enough to be printed.
+bool is_high_enough(const Extent& z, double plate, const ToothShape& shape) {
+  const bool is_on_plate = z.lower <= plate;
+  return z.upper - z.lower >= (is_on_plate ? kLeastShareOnPlate : 1) * shape.least_height;
+}
+
+// Which way a ridge goes at each of its points, a unit vector, and how much wider its cuts are there than it is.
+struct RidgeWay {
+  double x = 1, y = 0;
+  double wider = 1;
+};
+
+RidgeWay way_at(const RidgeRun& run, std::size_t i) {
+  const auto between = [&](std::size_t from, std::size_t to) {
+    const double x = run.points[to].x - run.points[from].x, y = run.points[to].y - run.points[from].y;
+    const double length = std::hypot(x, y);
+    return length > 0 ? RidgeWay{x / length, y / length} : RidgeWay{};
+  };
+  const std::size_t last = run.points.size() - 1;
+  if (last == 0) return {};
+  if (i == 0) return between(0, 1);
+  if (i == last) return between(last - 1, last);
+  RidgeWay way = between(i - 1, i + 1);
+  const RidgeWay onward = between(i, i + 1);
+  way.wider = 1 / std::max(0.7, way.x * onward.x + way.y * onward.y);
+  return way;
+}
+
 // Where ridges have `z`-extents that are a tooth, flank by flank; pieces of a run, since room may end.
 template <typename Heights>
 void add_run(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& columns, const RidgeRun& run,
              const Heights& heights, const ToothShape& shape, std::vector<bool>& is_made) {
-  const double half = shape.width / 2;
-  // Ridges that meet in a corner share no vertices.
-  const double beyond = run.along_x ? half : 0.9 * half;
   const double nearest = 2 * columns.spacing;
-  const auto flanks = [&](std::uint32_t span, double along) -> std::optional<std::array<Flank, 2>> {
-    const double ceiling = columns.spans[span].ceiling;
-    const double x = columns.x_at(columns.x_of(span)) + (run.along_x ? along : 0);
-    const double y = columns.y_at(columns.y_of(span)) + (run.along_x ? 0 : along);
+  const auto flanks = [&](std::size_t i, double along) -> std::optional<std::array<Flank, 2>> {
+    const RidgeWay way = way_at(run, i);
+    const RidgePoint& point = run.points[i];
+    const double ceiling = columns.spans[point.span].ceiling;
+    // Ridges that meet in a corner share no vertices.
+    const double beyond = along * (std::abs(way.x) >= std::abs(way.y) ? 0.5 : 0.45) * shape.width;
+    const double x = point.x + beyond * way.x, y = point.y + beyond * way.y;
     std::array<Flank, 2> cut;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-      const double aside = side == 0 ? half : -half;  // left first
-      const double at_x = x + (run.along_x ? 0 : -aside), at_y = y + (run.along_x ? aside : 0);
+      const double aside = (side == 0 ? 0.5 : -0.5) * shape.width * way.wider;  // left first
+      const double at_x = x - aside * way.y, at_y = y + aside * way.x;
       cut[side] = {at_x, at_y, heights.extent(at_x, at_y, ceiling, nearest)};
     }
     for (const Flank& flank : cut)
-      if (!(flank.z.upper - flank.z.lower >= shape.least_height)) return std::nullopt;
+      if (!is_high_enough(flank.z, columns.plate, shape)) return std::nullopt;
     return cut;
   };
   const auto goes_on = [&](const std::array<Flank, 2>& from, const std::array<Flank, 2>& to) {
@@ -195,35 +227,36 @@ void add_run(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& 
   };
   std::vector<std::array<Flank, 2>> cuts;
   std::vector<std::uint32_t> under;  // the spans that these are under
-  std::uint32_t before = kNoSpan;
-  const auto finish = [&] {
+  const auto finish = [&](std::size_t end_at) {
     if (cuts.empty()) return;
-    if (const auto end = flanks(before, beyond); end && goes_on(cuts.back(), *end)) cuts.push_back(*end);
+    if (const auto end = flanks(end_at, 1); end && goes_on(cuts.back(), *end)) cuts.push_back(*end);
     if (cuts.size() > 1) {
       add_ridge(teeth.mesh, cuts);
-      teeth.tip_area += shape.width * std::hypot(cuts.back()[0].x - cuts.front()[0].x,
-                                                 cuts.back()[0].y - cuts.front()[0].y);
+      for (std::size_t i = 1; i < cuts.size(); ++i)
+        teeth.tip_area += shape.width *
+                          std::hypot(cuts[i][0].x + cuts[i][1].x - cuts[i - 1][0].x - cuts[i - 1][1].x,
+                                     cuts[i][0].y + cuts[i][1].y - cuts[i - 1][0].y - cuts[i - 1][1].y) /
+                          2;
       ++teeth.count;
       for (const std::uint32_t span : under) is_made[span] = true;
     }
     cuts.clear();
     under.clear();
   };
-  for (const std::uint32_t span : run.spans) {
-    const auto cut = flanks(span, 0);
+  for (std::size_t i = 0; i < run.points.size(); ++i) {
+    const auto cut = flanks(i, 0);
     if (!cut) {
-      finish();
+      finish(i - 1);
       continue;
     }
-    if (!cuts.empty() && !goes_on(cuts.back(), *cut)) finish();
+    if (!cuts.empty() && !goes_on(cuts.back(), *cut)) finish(i - 1);
     if (cuts.empty()) {
-      if (const auto begin = flanks(span, -beyond); begin && goes_on(*begin, *cut)) cuts.push_back(*begin);
+      if (const auto begin = flanks(i, -1); begin && goes_on(*begin, *cut)) cuts.push_back(*begin);
     }
     cuts.push_back(*cut);
-    under.push_back(span);
-    before = span;
+    under.push_back(run.points[i].span);
   }
-  finish();
+  finish(run.points.size() - 1);
 }
 
 // A flat tip leaves the gap at its rim, too.
@@ -259,7 +292,9 @@ Vec3d lowest_near(const Heights& heights, Vec3d at, double spacing, double off) 
       }
     }
   }
-  return lowest;
+  // Under the column itself, which is what begins in the air.
+  return {std::clamp(lowest.x, at.x - spacing / 2, at.x + spacing / 2),
+          std::clamp(lowest.y, at.y - spacing / 2, at.y + spacing / 2), lowest.z};
 }
 
 // How wide a cone may be: its base in tips, and its tip in those asked for.
@@ -279,8 +314,11 @@ bool add_cone_at(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersid
                        : columns.place(span);
   const double radius = widths.tip * shape.width / 2;
   Extent z = heights.extent(at.x, at.y, at.z, columns.spacing);
+  const double foot = z.lower;
   if (shape.gap > 0) keep_below_rim(heights, at, radius, columns.spacing, tip_is_above, z);
-  if (!(z.upper - z.lower >= shape.least_height)) return false;
+  // A foot beside what it would stand on.
+  if (shape.gap > 0 && !tip_is_above && z.lower - foot > kMostBeside * shape.gap) return false;
+  if (!is_high_enough(z, columns.plate, shape)) return false;
   if (shape.gap > 0 && tip_is_above && at.z - z.upper > kMostGap * shape.gap) return false;
   const double base = std::min(radius + kConeSlope * (z.upper - z.lower), widths.widest_base * radius);
   const Vec3d upper{at.x, at.y, z.upper}, lower{at.x, at.y, z.lower};
@@ -293,6 +331,63 @@ bool add_cone_at(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersid
   return true;
 }
 
+// A cone under a span, as wide as there is room for.
+template <typename Heights>
+bool add_widest_cone(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& columns,
+                     std::uint32_t span, const Heights& heights, const ToothShape& shape, bool tip_is_above) {
+  constexpr std::array<ConeWidths, 4> kWidths{
+      {{kWidestBase, 1}, {1, 1}, {1, kNarrowTip}, {1, kNarrowTip * kNarrowTip}}};
+  return std::ranges::any_of(kWidths, [&](ConeWidths widths) {
+    return add_cone_at(teeth, model, columns, span, heights, shape, widths, tip_is_above);
+  });
+}
+
+// Spans no more than so many columns from one, the nearest first, itself the first.
+std::vector<std::uint32_t> spans_near(const Undersides& columns, std::uint32_t span, std::size_t rings) {
+  std::vector<std::uint32_t> near{span};
+  std::size_t first = 0;
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    const std::size_t end = near.size();
+    for (std::size_t i = first; i < end; ++i) {
+      for (const auto& [dx, dy] : {std::pair(1, 0), std::pair(0, 1), std::pair(-1, 0), std::pair(0, -1)}) {
+        const std::uint32_t other = columns.next(near[i], dx, dy);
+        if (other != kNoSpan && std::ranges::find(near, other) == near.end()) near.push_back(other);
+      }
+    }
+    first = end;
+  }
+  return near;
+}
+
+// Cones where those that were planned have no room, beside these places.
+template <typename Heights>
+void add_beside(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& columns,
+                const Heights& heights, const ToothShape& shape, double reach, bool tip_is_above,
+                const std::vector<bool>& is_made) {
+  constexpr std::size_t kRings = 3;
+  std::vector<Holder> made;
+  for (std::uint32_t i = 0; i < columns.spans.size(); ++i)
+    if (is_made[i]) made.push_back(holder_in(columns, i));
+  std::vector<double> distances = distances_from_hold(columns, made);
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t i = 0; i < columns.spans.size(); ++i)
+    if (columns.hold[i] == Hold::bridge && distances[i] > reach) left.push_back(i);
+  // The farthest first, and of those that nothing holds the lowest.
+  std::ranges::stable_sort(left, [&](std::uint32_t a, std::uint32_t b) {
+    return distances[a] != distances[b] ? distances[a] > distances[b]
+                                        : columns.spans[a].ceiling < columns.spans[b].ceiling;
+  });
+  for (const std::uint32_t span : left) {
+    if (distances[span] <= reach) continue;
+    for (const std::uint32_t other : spans_near(columns, span, kRings)) {
+      if (!add_widest_cone(teeth, model, columns, other, heights, shape, tip_is_above)) continue;
+      hold_also(columns, {holder_in(columns, other)}, distances);
+      break;
+    }
+    if (distances[span] > reach) teeth.left.push_back(span);
+  }
+}
+
 template <typename Heights>
 ToothSurfaces teeth_of(const SurfaceIndex& model, const Undersides& columns, const TeethPlan& plan,
                        const Heights& heights, const ToothShape& shape, bool tip_is_above) {
@@ -301,14 +396,10 @@ ToothSurfaces teeth_of(const SurfaceIndex& model, const Undersides& columns, con
   std::vector<bool> is_made(columns.spans.size(), false);
   for (const RidgeRun& run : plan.runs) add_run(teeth, model, columns, run, heights, shape, is_made);
   for (const std::uint32_t span : plan.held) {
-    if (is_made[span]) continue;
-    const bool is_there =
-        add_cone_at(teeth, model, columns, span, heights, shape, {kWidestBase, 1}, tip_is_above) ||
-        add_cone_at(teeth, model, columns, span, heights, shape, {1, 1}, tip_is_above) ||
-        add_cone_at(teeth, model, columns, span, heights, shape, {1, kNarrowTip}, tip_is_above) ||
-        add_cone_at(teeth, model, columns, span, heights, shape, {1, kNarrowTip * kNarrowTip}, tip_is_above);
-    if (!is_there) ++teeth.no_room;
+    if (!is_made[span])
+      is_made[span] = add_widest_cone(teeth, model, columns, span, heights, shape, tip_is_above);
   }
+  add_beside(teeth, model, columns, heights, shape, plan.reach, tip_is_above, is_made);
   return teeth;
 }
 

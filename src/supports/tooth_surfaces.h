@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "core/mesh.h"
 #include "core/surface_index.h"
@@ -10,11 +12,12 @@
 namespace aerate {
 
 struct ToothShape {
-  double width = 0.5;         // of ridges, and of the flat tips of cones, mm
-  double gap = 0.2;           // left free between a tooth and what it holds, mm
-  double penetration = 0.1;   // where nothing is left free: by how much a tip is within what it holds, mm
-  double embedded = 0.9;      // how deep a tooth goes into the body, mm
-  double least_height = 0.1;  // a lower tooth is none, mm
+  double width = 0.5;        // of ridges, and of the flat tips of cones, mm
+  double gap = 0.2;          // left free between a tooth and what it holds, mm
+  double penetration = 0.1;  // where nothing is left free: by how much a tip is within what it holds, mm
+  double embedded = 0.9;     // how deep a tooth goes into the body, mm
+  double least_height =
+      0.1;  // a lower tooth is none, mm; on the plate, where layers begin, 0.6 of that will do
 
   // No part of a tooth is nearer to the model, mm; across a slope the gap is narrower than along up.
   double least_distance() const { return 0.4 * gap; }
@@ -25,9 +28,10 @@ struct ToothShape {
 // Closed shells, outward, each on its own; they run into the body and into each other.
 struct ToothSurfaces {
   Mesh mesh;
-  std::size_t count = 0;    // of teeth: runs of ridges, or cones
-  double tip_area = 0;      // seen along up, mm2; ridges that cross count twice
-  std::size_t no_room = 0;  // columns of teeth for which there is no room
+  std::size_t count = 0;  // of teeth: runs of ridges, or cones
+  double tip_area = 0;    // seen along up, mm2; ridges that cross count twice
+  std::vector<std::uint32_t>
+      left;  // spans farther from what holds them than the reach, near which no tooth has room
 };
 
 // From the body, or from what is below where there is none, to the ceilings of the model. `body`: null if there is none

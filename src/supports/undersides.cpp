@@ -23,8 +23,10 @@ constexpr double kColumnsPerReach = 5;
 constexpr double kLeastSpacing = 0.25, kMostSpacing = 0.45;
 constexpr double kMostColumns = 2e6;
 
-// What is so near to the plate or to the model below has no room for supports: it is printed onto that.
+// What is so near to the model below has no room for supports: it is printed onto that.
 constexpr double kLeastLayers = 2;
+// And to the plate, whose height layers keep: one is left free, as above a tooth. What is higher is printed two layers above it.
+constexpr double kLeastLayersOnPlate = 1.55;
 
 // A step down from one column to the next is level up to this slope.
 constexpr double kLevelSlope = 0.2;
@@ -117,9 +119,9 @@ void find_holds(Undersides& columns, const SupportRules& rules) {
     const double z = columns.spans[span].ceiling;
     if (!std::isfinite(z) || !is_outside[i]) return;
     columns.hold[i] = Hold::bridge;
-    // The layers between it and the plate are too few to tell them apart.
-    const double below = std::max(columns.plate, columns.spans[span].floor);
-    if (z <= below + kLeastLayers * rules.layer) columns.hold[i] = Hold::angle;
+    if (z <= columns.plate + kLeastLayersOnPlate * rules.layer ||
+        z <= columns.spans[span].floor + kLeastLayers * rules.layer)
+      columns.hold[i] = Hold::angle;
     for (const Step& step : kSteps) {
       const std::size_t other = column_at(columns, span, step.dx, step.dy);
       const double lower = step.length * fall;
@@ -139,7 +141,7 @@ void find_tips(Undersides& columns, const SupportRules& rules) {
   std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) {
     return columns.spans[a].ceiling < columns.spans[b].ceiling;
   });
-  const double grounded = columns.plate + kLeastLayers * rules.layer;
+  const double grounded = columns.plate + kLeastLayersOnPlate * rules.layer;
   const double least_rise = std::max(rules.layer, kLevelSlope * columns.spacing);
   DisjointSets sets(columns.spans.size());
   std::vector<std::uint32_t> lowest(columns.spans.size(), kNoSpan);  // by root
@@ -179,24 +181,33 @@ void find_tips(Undersides& columns, const SupportRules& rules) {
   std::ranges::sort(columns.tips);
 }
 
-// A span whose ceiling is held by what is `source`, so far away.
+Undersides columns_in(const Box3d& box, const kernels::WindingView& winding, double plate, double spacing) {
+  Undersides columns;
+  columns.spacing = spacing;
+  columns.plate = plate;
+  columns.origin_x = box.lower.x - (kMargin + kOffGridX) * spacing;
+  columns.origin_y = box.lower.y - (kMargin + kOffGridY) * spacing;
+  const auto count = [&](double lower, double upper) {
+    return static_cast<std::uint32_t>(std::ceil((upper - lower) / spacing)) + 2 * kMargin + 1;
+  };
+  columns.count_x = count(box.lower.x, box.upper.x);
+  columns.count_y = count(box.lower.y, box.upper.y);
+  add_spans(columns, winding);
+  return columns;
+}
+
+// A span whose ceiling is held by what is at a place, mm, so far away.
 struct Reached {
   double distance;
-  std::uint32_t span, source;
+  std::uint32_t span;
+  double from_x, from_y;
 
   bool operator<(const Reached& other) const {
     return distance != other.distance ? distance > other.distance : span > other.span;
   }
 };
 
-double across(const Undersides& columns, std::uint32_t a, std::uint32_t b) {
-  const double dx = static_cast<double>(columns.x_of(a)) - columns.x_of(b);
-  const double dy = static_cast<double>(columns.y_of(a)) - columns.y_of(b);
-  return columns.spacing * std::hypot(dx, dy);
-}
-
-void spread(const Undersides& columns, std::priority_queue<Reached> open, double reach,
-            std::vector<double>& distances) {
+void spread(const Undersides& columns, std::priority_queue<Reached> open, std::vector<double>& distances) {
   while (!open.empty()) {
     const Reached at = open.top();
     open.pop();
@@ -208,11 +219,21 @@ void spread(const Undersides& columns, std::priority_queue<Reached> open, double
       if (columns.spans[other].ceiling <
           columns.spans[at.span].ceiling - kLevelSlope * step.length * columns.spacing)
         continue;
-      const double distance = std::max(at.distance, across(columns, other, at.source));
-      if (distance > reach || distance >= distances[other]) continue;
+      const double away = std::hypot(columns.x_at(columns.x_of(other)) - at.from_x,
+                                     columns.y_at(columns.y_of(other)) - at.from_y);
+      const double distance = std::max(at.distance, away);
+      if (distance >= distances[other]) continue;
       distances[other] = distance;
-      open.push({distance, other, at.source});
+      open.push({distance, other, at.from_x, at.from_y});
     }
+  }
+}
+
+void add_holders(const std::vector<Holder>& held, std::priority_queue<Reached>& open,
+                 std::vector<double>& distances) {
+  for (const Holder& holder : held) {
+    distances[holder.span] = 0;
+    open.push({0, holder.span, holder.x, holder.y});
   }
 }
 
@@ -250,50 +271,43 @@ double column_spacing(const Mesh& upright, const SupportRules& rules) {
   return std::max(wanted, std::sqrt(area / kMostColumns));
 }
 
+Undersides columns_of(const kernels::WindingView& winding, double plate, double spacing) {
+  return columns_in(winding.box, winding, plate, spacing);
+}
+
 Undersides find_undersides(const Mesh& upright, const kernels::WindingView& winding,
                            const SupportRules& rules, double plate, double spacing) {
   const Box3f box = bounding_box(upright);
-  Undersides columns;
-  columns.spacing = spacing;
-  columns.plate = plate;
-  columns.origin_x = static_cast<double>(box.lower.x) - (kMargin + kOffGridX) * spacing;
-  columns.origin_y = static_cast<double>(box.lower.y) - (kMargin + kOffGridY) * spacing;
-  const auto count = [&](float lower, float upper) {
-    return static_cast<std::uint32_t>(
-               std::ceil((static_cast<double>(upper) - static_cast<double>(lower)) / spacing)) +
-           2 * kMargin + 1;
-  };
-  columns.count_x = count(box.lower.x, box.upper.x);
-  columns.count_y = count(box.lower.y, box.upper.y);
-  add_spans(columns, winding);
+  Undersides columns = columns_in({to_double(box.lower), to_double(box.upper)}, winding, plate, spacing);
   find_holds(columns, rules);
   find_tips(columns, rules);
   return columns;
 }
 
-std::vector<double> distances_from_hold(const Undersides& columns, const std::vector<std::uint32_t>& held) {
+Holder holder_in(const Undersides& columns, std::uint32_t span) {
+  return {span, columns.x_at(columns.x_of(span)), columns.y_at(columns.y_of(span))};
+}
+
+std::vector<double> distances_from_hold(const Undersides& columns, const std::vector<Holder>& held) {
   std::vector<double> distances(columns.spans.size(), kInfinity);
   std::priority_queue<Reached> open;
   for (std::uint32_t i = 0; i < columns.spans.size(); ++i) {
     if (columns.hold[i] != Hold::angle) continue;
     distances[i] = 0;
-    open.push({0, i, i});
+    const Holder own = holder_in(columns, i);
+    open.push({0, i, own.x, own.y});
   }
   // A tip is held by nothing but what is under it.
   for (const std::uint32_t tip : columns.tips) distances[tip] = kInfinity;
-  for (const std::uint32_t span : held) {
-    distances[span] = 0;
-    open.push({0, span, span});
-  }
-  spread(columns, std::move(open), kInfinity, distances);
+  add_holders(held, open, distances);
+  spread(columns, std::move(open), distances);
   return distances;
 }
 
-void hold_also(const Undersides& columns, std::uint32_t held, double reach, std::vector<double>& distances) {
-  distances[held] = 0;
+void hold_also(const Undersides& columns, const std::vector<Holder>& held, std::vector<double>& distances) {
   std::priority_queue<Reached> open;
-  open.push({0, held, held});
-  spread(columns, std::move(open), reach, distances);
+  add_holders(held, open, distances);
+  spread(columns, std::move(open), distances);
 }
 
 }  // namespace aerate

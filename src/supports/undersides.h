@@ -55,17 +55,28 @@ struct Undersides {
 // How far apart columns are, mm: as the process needs, coarser for models with more than some millions of columns.
 double column_spacing(const Mesh& upright, const SupportRules& rules);
 
+// Columns and their spans alone, without how these are held. `winding`: of what is closed, up is +z.
+Undersides columns_of(const kernels::WindingView& winding, double plate, double spacing);
+
 // `upright`: closed, up is +z; `winding`: of it; `plate`: no higher than its lowest point. The same on any number of
 // threads.
 Undersides find_undersides(const Mesh& upright, const kernels::WindingView& winding,
                            const SupportRules& rules, double plate, double spacing);
 
+// What holds a span's ceiling, at a place in or beside its column, mm.
+struct Holder {
+  std::uint32_t span = 0;
+  double x = 0, y = 0;
+};
+
+// In the middle of a span's column.
+Holder holder_in(const Undersides& undersides, std::uint32_t span);
+
 // Along the underside, from lower to higher, as it is printed: horizontally measured, mm, from the nearest ceiling that is held by
 // its angle, or from one of `held`; kInfinity for what begins in the air.
-std::vector<double> distances_from_hold(const Undersides& undersides, const std::vector<std::uint32_t>& held);
+std::vector<double> distances_from_hold(const Undersides& undersides, const std::vector<Holder>& held);
 
-// The same for one more that holds: lowers `distances`, looking no further than `reach`.
-void hold_also(const Undersides& undersides, std::uint32_t held, double reach,
-               std::vector<double>& distances);
+// The same for some more that hold: lowers `distances`.
+void hold_also(const Undersides& undersides, const std::vector<Holder>& held, std::vector<double>& distances);
 
 }  // namespace aerate
