@@ -105,10 +105,7 @@ SliceSupportsReport slice_supports(const SliceSupportsOptions& options, Monitor&
     }
   }
   write_bytes(read_text(runs.gcode_of(kOurs)), pending.file());
-  log.check_interrupted();  // the last time that nothing is left behind
-  pending.file().commit();
-  report.stages = log.finish();
-  report.notices = log.notices();
+  end_job(log, report, [&] { pending.file().commit(); });
   return report;
 }
 
