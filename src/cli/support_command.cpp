@@ -129,7 +129,10 @@ struct SupportCommand {
         try {
           return foamed(body, what, name, given, may_open, monitor);
         } catch (const Error& error) {
-          if (is_asked || error.code() != ExitCode::nothing_to_remove) throw;
+          if (error.code() != ExitCode::nothing_to_remove) throw;
+          if (is_asked)
+            throw NothingToRemoveError(std::string("no voids can be made in the body: ") + error.what(),
+                                       "leave out --fill for a plain body, or give a larger --stem");
           monitor.notice(std::string("the body stays plain: ") + error.what());
           return FoamedBody{body, ""};
         }

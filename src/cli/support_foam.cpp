@@ -30,6 +30,15 @@ class TrialMonitor : public Monitor {
   Monitor& inner_;
 };
 
+// Without options that it proposes, which are those of `hollow`: "(--hole-diameter 5 leaves ...)".
+std::string without_options(std::string notice) {
+  for (auto begin = notice.find(" (--"); begin != std::string::npos; begin = notice.find(" (--", begin)) {
+    const auto end = notice.find(')', begin);
+    notice.erase(begin, end == std::string::npos ? end : end + 1 - begin);
+  }
+  return notice;
+}
+
 struct Rows {
   std::vector<double> vertices;
   std::vector<std::int64_t> triangles;
@@ -49,7 +58,7 @@ std::string option(const char* name, double value) {
   return fmt::format("--{}={:g}", name, value);
 }
 
-// Arguments of each way to do it; the last is for where the others fail.
+// Arguments of each way to do it, what leaves least first.
 std::vector<std::vector<std::string>> ways(Fill fill, const std::string& name, const Limits& given) {
   const Process process = choose_process(name);
   const double wall = process.limits.at(Limit::least_wall).value;
@@ -65,17 +74,20 @@ std::vector<std::vector<std::string>> ways(Fill fill, const std::string& name, c
   const auto channel = process.limits.find(Limit::channel);
   if (fill != Fill::cells || channel == process.limits.end()) return {usual};
   // One void in each body, where it is as wide as a channel somewhere: into all that is no narrower than walls have to be, or no
-  // narrower than a channel, which is simpler to open; then several cells. Where none of these can be opened, all that `hollow` tries.
+  // narrower than a channel, which is simpler to open. Where neither takes much, all that `hollow` tries. Below roofs it is less narrow.
   const double radius = channel->second.value / 2;
-  const auto with = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), usual.begin(), usual.end());
-    return more;
+  const auto single = [&](double fillet) {
+    std::vector<std::string> arguments = usual;
+    arguments.insert(arguments.end(), {"--max-voids=1", option("min-radius", radius / kWidestTubeShare),
+                                       option("fillet", fillet)});
+    return arguments;
   };
-  const std::string narrow = option("min-radius", radius / kWidestTubeShare);
-  return {with({"--max-voids=1", narrow, option("fillet", wall)}),
-          with({"--max-voids=1", narrow, option("fillet", radius)}),
-          with({option("fillet", process.limits.contains(Limit::bridge) ? radius / 2 : radius)}), usual};
+  if (process.limits.contains(Limit::bridge)) return {single(radius / 2), usual};
+  return {single(wall), single(radius), usual};
 }
+
+// Of a body: other ways are worth their time where less is taken.
+constexpr double kEnough = 0.4;
 
 }  // namespace
 
@@ -86,9 +98,8 @@ FoamedBody foamed(const Mesh& body, Fill fill, const std::string& process, const
   std::optional<Mesh> best;
   std::vector<std::string> notices;
   std::exception_ptr refusal;
-  const auto all = ways(fill, process, given);
-  for (const std::vector<std::string>& arguments : all) {
-    if (best && &arguments == &all.back()) break;
+  for (const std::vector<std::string>& arguments : ways(fill, process, given)) {
+    if (best && signed_volume(*best) <= (1 - kEnough) * signed_volume(body)) break;
     TrialMonitor trial(monitor);
     try {
       Mesh made = hollow_mesh({"supports", &arrays, arguments}, may_open, trial);
@@ -103,7 +114,7 @@ FoamedBody foamed(const Mesh& body, Fill fill, const std::string& process, const
     }
   }
   if (!best) std::rethrow_exception(refusal);
-  for (const std::string& notice : notices) monitor.notice("voids in supports: " + notice);
+  for (const std::string& notice : notices) monitor.notice("voids in supports: " + without_options(notice));
   return {*std::move(best), fill == Fill::cells ? "cells" : "spheres"};
 }
 

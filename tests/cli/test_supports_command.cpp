@@ -199,7 +199,10 @@ TEST_F(SupportCommand, TellsWhatTheVoidsOfItsBodyLack) {
   const auto is_of_voids = [](const Json& notice) {
     return contains(notice.get<std::string>(), "voids in supports: ");
   };
-  EXPECT_TRUE(std::ranges::any_of(json["notices"], is_of_voids)) << json["notices"];
+  const auto notice = std::ranges::find_if(json["notices"], is_of_voids);
+  ASSERT_NE(notice, json["notices"].end()) << json["notices"];
+  // Options of another command are not proposed.
+  EXPECT_FALSE(contains(notice->get<std::string>(), "--")) << *notice;
 }
 
 TEST_F(SupportCommand, PutsVoidsIntoTheBodyForFilament) {
@@ -394,7 +397,7 @@ TEST_F(SupportCommand, SlenderBodiesStandOnWiderFeet) {
 
 TEST_F(SupportCommand, RefusesVoidsThatFindNoPlace) {
   model = job.input("low.stl", join(make_box({0, 0, 0}, {10, 10, 8}), make_box({10, 0, 3}, {16, 10, 8})));
-  expect_refused({"--process", "sla", "--fill", "spheres"}, 5, "");
+  expect_refused({"--process", "sla", "--fill", "spheres"}, 5, "leave out --fill");
 }
 
 TEST_F(SupportCommand, RefusesAPlaceWithoutRoom) {
