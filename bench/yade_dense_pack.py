@@ -3,11 +3,20 @@
 Run by yade itself: yade -n -x yade_dense_pack.py ... OUT gets the seconds of the packing, then a line
 "x y z radius" for each sphere. Radii are RADIUS (1 - FUZZ) to RADIUS (1 + FUZZ).
 """
+import struct
 import sys
 import time
 
 import gts
-from yade import pack, ymport
+from yade import pack
+
+
+def triangles_of(model):
+    """Of a binary STL; corners that are the same are the same to the bit, which YADE's own reader does not keep."""
+    with open(model, "rb") as file:
+        (count,) = struct.unpack_from("<I", file.read(84), 80)
+        for record in struct.iter_unpack("<12x9f2x", file.read(50 * count)):
+            yield record[0:3], record[3:6], record[6:9]
 
 
 def surface_of(model):
@@ -15,13 +24,17 @@ def surface_of(model):
     vertices, edges = {}, {}
 
     def vertex(point):
-        return vertices.setdefault(point, gts.Vertex(*point))
+        if point not in vertices:
+            vertices[point] = gts.Vertex(*point)
+        return vertices[point]
 
     def edge(a, b):
-        return edges.setdefault(frozenset((a, b)), gts.Edge(vertex(a), vertex(b)))
+        key = frozenset((a, b))
+        if key not in edges:
+            edges[key] = gts.Edge(vertex(a), vertex(b))
+        return edges[key]
 
-    for facet in ymport.stl(model):
-        a, b, c = (tuple(facet.state.pos + corner) for corner in facet.shape.vertices)
+    for a, b, c in triangles_of(model):
         surface.add(gts.Face(edge(a, b), edge(b, c), edge(c, a)))
     return surface
 

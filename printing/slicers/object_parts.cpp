@@ -33,6 +33,10 @@ std::string metadata_of(const pugi::xml_node& node, const char* key) {
   return node.find_child_by_attribute("metadata", "key", key).attribute("value").as_string();
 }
 
+bool are_named_supports(const pugi::xml_node& body, const char* pattern_key) {
+  return metadata_of(body, "name") == kSupports && metadata_of(body, pattern_key) == kLightning;
+}
+
 std::string entry_or_nothing(const std::filesystem::path& package, const char* entry) {
   try {
     return read_3mf_entry(package, entry);

@@ -63,6 +63,10 @@ std::vector<ObjectPart> modifier_parts(const Solid& solid, double infill_percent
 
 std::string metadata_of(const pugi::xml_node& node, const char* key);
 
+// Whether a body is supports that this program added: by its name, and since it is filled as these are.
+//   pattern_key: what the slicer calls the pattern of infill
+bool are_named_supports(const pugi::xml_node& body, const char* pattern_key);
+
 // An entry of a package, empty if there is none.
 std::string entry_or_nothing(const std::filesystem::path& package, const char* entry);
 

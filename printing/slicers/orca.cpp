@@ -79,6 +79,7 @@ std::optional<double> cm3_of_mm3(std::string_view text) {
 constexpr const char* kModifier = "modifier_part";
 constexpr const char* kBlocker = "support_blocker";
 constexpr const char* kBody = "normal_part";
+constexpr const char* kInfillPattern = "sparse_infill_pattern";
 // Of an object that has supports of its own.
 constexpr const char* kNoOthers =
     "  <metadata key=\"enable_support\" value=\"0\" />\n  <metadata key=\"thick_bridges\" value=\"0\" />\n";
@@ -115,7 +116,7 @@ std::string file_for(const Mesh& mesh, const ObjectPart& model, const ObjectPart
   // One of Bambu Studio's versions would make Orca ask whether it is to be converted, and its command line crash.
   extras.application = "aerate " AERATE_VERSION;
   std::string settings =
-      setting("sparse_infill_density", voids.infill) + setting("sparse_infill_pattern", voids.pattern);
+      setting("sparse_infill_density", voids.infill) + setting(kInfillPattern, voids.pattern);
   const bool are_supports = !voids.settings.empty();
   for (const PartSetting& each : voids.settings) settings += setting(each.key.c_str(), each.value);
   const char* const kind = are_supports ? kBody : voids.blocks_support ? kBlocker : kModifier;
@@ -138,8 +139,13 @@ bool is_blocker(const pugi::xml_node& part) {
   return std::string_view(part.attribute("subtype").as_string()) == kBlocker;
 }
 
-bool is_own_blocker(const pugi::xml_node& part) {
-  return is_blocker(part) && metadata_of(part, "name") == kSupportBlockers;
+bool is_body(const pugi::xml_node& part) {
+  return std::string_view(part.attribute("subtype").as_string(kBody)) == kBody;
+}
+
+bool is_own_part(const pugi::xml_node& part) {
+  if (is_blocker(part)) return metadata_of(part, "name") == kSupportBlockers;
+  return is_body(part) && are_named_supports(part, kInfillPattern);
 }
 
 // Of a body; all but its name and place.
@@ -163,15 +169,15 @@ std::vector<ObjectPart> read_parts(const fs::path& package) {
         meshes.find_child_by_attribute("object", "id", part.attribute("id").as_string());
     const auto triangles = object.child("mesh").child("triangles").children("triangle");
     const auto count = static_cast<std::size_t>(std::distance(triangles.begin(), triangles.end()));
-    const bool is_body = !is_modifier(part) && !is_blocker(part);
+    const bool is_solid = !is_modifier(part) && !is_blocker(part);
     ObjectPart read{metadata_of(part, "name"),
                     next,
                     count,
                     is_modifier(part),
-                    is_body ? "" : metadata_of(part, "sparse_infill_density"),
-                    is_body ? "" : metadata_of(part, "sparse_infill_pattern"),
+                    is_solid ? "" : metadata_of(part, "sparse_infill_density"),
+                    is_solid ? "" : metadata_of(part, kInfillPattern),
                     is_blocker(part)};
-    if (is_body) read.settings = settings_of(part);
+    if (is_solid) read.settings = settings_of(part);
     parts.push_back(std::move(read));
     next += count;
   }
@@ -179,8 +185,8 @@ std::vector<ObjectPart> read_parts(const fs::path& package) {
 }
 
 std::optional<std::string> other_kind(const pugi::xml_node& part) {
-  const std::string type = part.attribute("subtype").as_string("normal_part");
-  return type == "normal_part" ? std::nullopt : std::optional(type);
+  if (!is_body(part)) return part.attribute("subtype").as_string();
+  return is_own_part(part) ? std::optional<std::string>(kSupports) : std::nullopt;
 }
 
 VolumeTriangles triangles_of(const pugi::xml_node& part) {
@@ -230,7 +236,7 @@ SlicerProfile orca_slicer() {
   row.project = project_facts;
   row.modifiers = {
       .flavor = "orca",
-      .volumes = VolumeList{kPartList, "part", other_kind, is_modifier, triangles_of, is_own_blocker},
+      .volumes = VolumeList{kPartList, "part", other_kind, is_modifier, triangles_of, is_own_part},
       .file = file_for,
       .named = named,
       .read = read_parts,
@@ -241,7 +247,7 @@ SlicerProfile orca_slicer() {
       .has_blockers = true,
       .support_settings = {{"wall_loops", "1"},
                            {"sparse_infill_density", "10%"},
-                           {"sparse_infill_pattern", "lightning"},
+                           {kInfillPattern, kLightning},
                            {"top_shell_layers", "1"},
                            {"bottom_shell_layers", "0"},
                            {"minimum_sparse_infill_area", "0"}}};

@@ -13,6 +13,7 @@ namespace aerate {
 namespace {
 
 constexpr const char* kBlockerType = "SupportBlocker";
+constexpr const char* kInfillPattern = "fill_pattern";
 // Alphas of 3.0 read modifiers in packages of versions below 2.99 only (issue 15694), 2.9 warns of packages of newer ones than it is.
 constexpr const char* kApplication = "PrusaSlicer-2.9.0";
 constexpr const char* kPartList = "Metadata/Slic3r_PE_model.config";
@@ -136,8 +137,16 @@ std::vector<ObjectPart> read_parts(const std::filesystem::path& package) {
   return parts;
 }
 
+bool is_own_part(const pugi::xml_node& volume) {
+  const std::string type = metadata_of(volume, "volume_type");
+  const std::string name = metadata_of(volume, "name");
+  if (type == kBlockerType) return name == kSupportBlockers;
+  return (type.empty() || type == "ModelPart") && are_named_supports(volume, kInfillPattern);
+}
+
 std::optional<std::string> other_kind(const pugi::xml_node& volume) {
   const std::string type = metadata_of(volume, "volume_type");
+  if (is_own_part(volume) && type != kBlockerType) return kSupports;
   if (type.empty() && metadata_of(volume, "modifier") == "1") return "modifier";
   return type.empty() || type == "ModelPart" ? std::nullopt : std::optional(type);
 }
@@ -145,11 +154,6 @@ std::optional<std::string> other_kind(const pugi::xml_node& volume) {
 bool is_modifier(const pugi::xml_node& volume) {
   return metadata_of(volume, "volume_type") == "ParameterModifier" ||
          (metadata_of(volume, "volume_type").empty() && metadata_of(volume, "modifier") == "1");
-}
-
-bool is_own_blocker(const pugi::xml_node& volume) {
-  return metadata_of(volume, "volume_type") == kBlockerType &&
-         metadata_of(volume, "name") == kSupportBlockers;
 }
 
 VolumeTriangles triangles_of(const pugi::xml_node& volume) {
@@ -286,7 +290,7 @@ SlicerProfile prusa_slicer() {
   row.labelled_object = labelled_object;
   row.modifiers = {
       .flavor = "prusa",
-      .volumes = VolumeList{kPartList, "volume", other_kind, is_modifier, triangles_of, is_own_blocker},
+      .volumes = VolumeList{kPartList, "volume", other_kind, is_modifier, triangles_of, is_own_part},
       .file = file_for,
       .named = named,
       .read = read_parts,
@@ -295,7 +299,7 @@ SlicerProfile prusa_slicer() {
       .has_blockers = true,
       .support_settings = {{"perimeters", "1"},
                            {"fill_density", "10%"},
-                           {"fill_pattern", "lightning"},
+                           {kInfillPattern, kLightning},
                            {"top_solid_layers", "1"},
                            {"bottom_solid_layers", "0"},
                            // Else a narrow body would be solid.

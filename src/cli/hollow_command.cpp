@@ -446,11 +446,15 @@ struct HollowCommand {
   std::string price_per = "kg";
 };
 
-CalledResult call_hollow(const Call& call, Monitor& monitor) {
+CalledResult call_hollow_with(const Call& call, const std::function<bool(const Tube& hole)>& may_open,
+                              Monitor& monitor) {
   const CommandAlone<HollowCommand> alone("hollow", call);
   const HollowCommand& command = alone.job();
   std::vector<JobForm> forms = command.forms();
-  for (JobForm& form : forms) form.options.arrays = call.arrays;
+  for (JobForm& form : forms) {
+    form.options.arrays = call.arrays;
+    form.options.may_open = may_open;
+  }
   CalledResult result;
   const auto keep_mesh = [&](const HollowedForm& made, const HollowReport&, Monitor&) {
     result.mesh = as_read_back(made.hollowed.carved.solid.mesh);
@@ -460,7 +464,15 @@ CalledResult call_hollow(const Call& call, Monitor& monitor) {
   return result;
 }
 
+CalledResult call_hollow(const Call& call, Monitor& monitor) {
+  return call_hollow_with(call, {}, monitor);
+}
+
 }  // namespace
+
+Mesh hollow_mesh(const Call& call, const std::function<bool(const Tube& hole)>& may_open, Monitor& monitor) {
+  return call_hollow_with(call, may_open, monitor).mesh;
+}
 
 CalledCommand called_hollow() {
   return {"hollow", options_of_command<HollowCommand>, call_hollow};

@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/called_commands.h"
+#include "core/drainage.h"
+#include "core/mesh.h"
+#include "core/monitor.h"
 #include "pipeline/best_form.h"
 
 namespace CLI {
@@ -20,5 +24,8 @@ void visit_hollow_options(const std::function<void(const CLI::Option&)>& visit);
 //   stem: of the result, which gets the ending that the options ask for, .stl if they ask for none
 std::vector<JobForm> forms_of_hollow(const std::filesystem::path& model, const std::filesystem::path& stem,
                                      std::vector<std::string> arguments);
+
+// What it makes of arrays, with escape holes only where they may open. Throws what it throws.
+Mesh hollow_mesh(const Call& call, const std::function<bool(const Tube& hole)>& may_open, Monitor& monitor);
 
 }  // namespace aerate::cli

@@ -25,6 +25,7 @@ struct InspectCommand {
         process_option(add_process_option(command, process,
                                           "with --drainage (default sla) and --overhangs (default fdm)")),
         up(command, config_file),
+        limits(command, config_file),
         build(command),
         views(command, "the model, with what is wrong at its place"),
         run_options(command) {
@@ -60,8 +61,10 @@ struct InspectCommand {
   std::string process_or(const char* other) const { return process.empty() ? other : process; }
 
   std::optional<OverhangInquiry> overhang_inquiry() const {
-    if (!overhangs) return std::nullopt;
-    return OverhangInquiry{choose_process(process_or("fdm")), up.direction()};
+    if (overhangs) return OverhangInquiry{choose_process(process_or("fdm")), up.direction(), limits.given()};
+    if (limits.are_given())
+      throw UsageError("--overhang and --bridge are for --overhangs", "add --overhangs");
+    return std::nullopt;
   }
 
   InspectOptions to_pipeline() const {
@@ -94,6 +97,7 @@ struct InspectCommand {
   std::string process;  // the question's own if empty
   const CLI::Option* process_option;
   DirectionOption up;
+  OverhangOptions limits;
   BuildOption build;
   ViewOptions views;
   RunOptions run_options;

@@ -1,11 +1,16 @@
 #include "cli/process_options.h"
 
 #include <fmt/format.h>
+#include <utility>
 
 #include "cli/numbers.h"
 
 namespace aerate::cli {
 namespace {
+
+// Of what is outside of a model: facets of steeper walls, and columns, are no finer than this.
+constexpr double kLeastOverhang = 5, kMostOverhang = 85;  // degrees
+constexpr double kLeastBridge = 1;                        // mm
 
 const CLI::Option* add_up(CLI::App& command, std::string& up) {
   return command
@@ -39,6 +44,31 @@ const CLI::Option* add_process_option(CLI::App& command, std::string& name, cons
       ->check(CLI::Validator(list_if_asked, ""))
       ->type_name("NAME")
       ->capture_default_str();
+}
+
+OverhangOptions::OverhangOptions(CLI::App& command, const ConfigFile& config)
+    : config_(config),
+      overhang_(
+          command
+              .add_option("--overhang",
+                          "Overhangs: what leans out further than this from the vertical needs supports "
+                          "(default of the process)")
+              ->check(number_between(kLeastOverhang, kMostOverhang, "degrees"))
+              ->type_name("DEG")),
+      bridge_(
+          command
+              .add_option("--bridge",
+                          "Overhangs: width of the widest one that prints between two sides that hold it; "
+                          "half of it, from one side (default of the process)")
+              ->check(number_between(kLeastBridge, kLongest, "mm"))
+              ->type_name("MM")) {}
+
+Limits OverhangOptions::given() const {
+  Limits given;
+  for (const auto& [limit, option] :
+       {std::pair(Limit::overhang, overhang_), std::pair(Limit::bridge, bridge_)})
+    if (option->count() > 0) given[limit] = {option->as<double>(), "", config_.origin_of(*option)};
+  return given;
 }
 
 ProcessOptions::ProcessOptions(CLI::App& command, const ConfigFile& config)

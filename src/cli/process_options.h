@@ -30,6 +30,18 @@ class DirectionOption {
 // --process, with what it is said to be for. `name` holds the default.
 const CLI::Option* add_process_option(CLI::App& command, std::string& name, const std::string& what_it_does);
 
+// --overhang and --bridge of what is outside of a model.
+class OverhangOptions {
+ public:
+  OverhangOptions(CLI::App& command, const ConfigFile& config);
+  bool are_given() const { return overhang_->count() + bridge_->count() > 0; }
+  Limits given() const;
+
+ private:
+  const ConfigFile& config_;
+  const CLI::Option *overhang_, *bridge_;
+};
+
 // --process, the limits of packing and of ceilings, --up
 class ProcessOptions {
  public:

@@ -552,10 +552,10 @@ std::string to_json(const SupportReport& report) {
   json["input"] = json_of(report.input);
   json["process"] = report.process.name;
   json["up"] = report.direction.name;
-  json["limits"] = {
-      {"overhang_degrees", report.rules.degrees},    {"reach_mm", report.rules.reach},
-      {"reach_source", report.rules.reach_source},   {"layer_mm", report.rules.layer},
-      {"clearance_mm", report.shape.body.clearance}, {"contact_gap_mm", report.shape.tooth.gap}};
+  json["limits"] = {{"overhang_degrees", report.rules.degrees},    {"reach_mm", report.rules.reach},
+                    {"reach_source", report.rules.reach_source},   {"layer_mm", report.rules.layer},
+                    {"clearance_mm", report.shape.body.clearance}, {"contact_gap_mm", report.shape.tooth.gap},
+                    {"stem_mm", 2 * report.shape.body.foot}};
   json["overhangs"] = {{"count", report.overhangs.regions.size()}, {"area_mm2", report.overhangs.area()}};
   json["body"] = {{"volume_mm3", report.body_volume},
                   {"fill", report.foam.empty() ? Json("plain") : Json(report.foam)},

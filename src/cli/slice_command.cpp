@@ -105,6 +105,11 @@ struct SliceCommand {
     options.support.weld = hollow.weld;
     options.support.process = hollow.packing.process.process;
     options.support.direction = hollow.packing.process.direction;
+    for (const Limit limit : {Limit::overhang, Limit::bridge}) {
+      const auto chosen = hollow.packing.process.limits.find(limit);
+      if (chosen != hollow.packing.process.limits.end() && !is_default(hollow.packing.process, limit))
+        options.support.given.insert(*chosen);
+    }
     return options;
   }
 

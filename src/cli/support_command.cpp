@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/called_commands.h"
 #include "cli/commands.h"
 #include "cli/model_options.h"
 #include "cli/numbers.h"
 #include "cli/process_options.h"
 #include "cli/run_reported.h"
+#include "cli/support_foam.h"
+#include "cli/view_options.h"
 #include "core/error.h"
 #include "files/formats.h"
 #include "pipeline/support.h"
@@ -20,7 +21,6 @@
 namespace aerate::cli {
 namespace {
 
-enum class Fill { plain, spheres, cells };
 const std::map<std::string, Fill> kFills{
     {"plain", Fill::plain}, {"spheres", Fill::spheres}, {"cells", Fill::cells}};
 
@@ -33,41 +33,6 @@ std::map<std::string, const SlicerProfile*> flavors() {
   return known;
 }
 
-// What the job of voids tells of itself says nothing of supports.
-class QuietMonitor : public Monitor {
- public:
-  explicit QuietMonitor(Monitor& inner) : inner_(inner) {}
-  void check_interrupted() override { inner_.check_interrupted(); }
-
- private:
-  Monitor& inner_;
-};
-
-// What `hollow` does with the body, under the limits of the process and the thinnest walls that it prints.
-FoamedBody foamed(const Mesh& body, Fill fill, const std::string& process, Monitor& monitor) {
-  const Process limits = choose_process(process);
-  std::vector<double> vertices;
-  std::vector<std::int64_t> triangles;
-  vertices.reserve(3 * body.positions.size());
-  triangles.reserve(3 * body.triangles.size());
-  for (const Vec3f& p : body.positions)
-    for (const float value : {p.x, p.y, p.z}) vertices.push_back(static_cast<double>(value));
-  for (const Triangle& t : body.triangles)
-    for (const std::uint32_t corner : t) triangles.push_back(corner);
-  const MeshArrays arrays{vertices, triangles};
-  const double wall = limits.limits.at(Limit::least_wall).value,
-               gap = limits.limits.at(Limit::least_gap).value;
-  const Call call{"supports",
-                  &arrays,
-                  {"--process=" + process, fill == Fill::cells ? "--shape=cells" : "--shape=spheres",
-                   fmt::format("--wall={:g}", wall), fmt::format("--gap={:g}", gap)}};
-  FoamedBody result;
-  QuietMonitor quiet(monitor);
-  result.mesh = called_hollow().run(call, quiet).mesh;
-  result.words = fill == Fill::cells ? "cells" : "spheres";
-  return result;
-}
-
 struct SupportCommand {
   SupportCommand(CLI::App& command, const ConfigFile& config_file)
       : config(config_file),
@@ -75,6 +40,8 @@ struct SupportCommand {
         process_option(
             add_process_option(command, process, "says what needs supports, and how they are made")),
         up(command, config_file),
+        limits(command, config_file),
+        views(command, "the model and its supports"),
         run_options(command) {
     command
         .add_option("-o,--output", output,
@@ -99,14 +66,20 @@ struct SupportCommand {
         .add_option(
             "--tooth", tooth,
             "Width of what touches the model: of ridges (default 0.5), for resin and metal of flat tips "
-            "(default 0.4); at least a line or a pixel")
-        ->check(number_between(0.05, 5, "mm"))
+            "(default 0.4); at least a line or a pixel, and no wider than the body under a single one")
+        ->check(number_between(0.05, 1.5, "mm"))
+        ->type_name("MM");
+    command
+        .add_option("--stem", stem,
+                    "Width that the body is not drawn in below on its way down (default 4 and, where "
+                    "voids drain, no less than a channel and a wall take); 200: straight down")
+        ->check(number_between(1.0, 200, "mm"))
         ->type_name("MM");
     command.add_option("--layer-height", layer_height, "Of the print (default 0.2 for fdm, else 0.05)")
         ->check(number_between(0.01, 1, "mm"))
         ->type_name("MM");
     command.add_option("--plate", plate, "Height of the plate along --up (default the model's lowest point)")
-        ->check(CLI::Number)
+        ->check(number_between(-kLongest, kLongest, "mm"))
         ->type_name("MM");
     command
         .add_option(
@@ -135,6 +108,9 @@ struct SupportCommand {
     options.weld = model.weld;
     options.process = choose_process(process);
     options.direction = up.direction();
+    options.given = limits.given();
+    options.stem = stem;
+    options.views = views.outputs();
     options.clearance = clearance;
     options.contact_gap = contact_gap;
     options.tooth = tooth;
@@ -145,13 +121,18 @@ struct SupportCommand {
       throw UsageError("--extruder is for supports that are a part", "add --parts prusa or --parts orca");
     if (extruder) options.extruder = static_cast<int>(*extruder);
     const bool is_filament = options.process.drainage == Drainage::not_needed;
-    const Fill what = !fill.empty() ? kFills.at(fill) : is_filament ? Fill::plain : Fill::cells;
+    const bool is_plain_unasked = is_filament || options.parts_for != nullptr;
+    const Fill what = !fill.empty() ? kFills.at(fill) : is_plain_unasked ? Fill::plain : Fill::cells;
     if (what != Fill::plain)
-      options.foam = [what, name = process, is_asked = !fill.empty()](const Mesh& body, Monitor& monitor) {
+      options.foam = [what, name = process, given = options.given, is_asked = !fill.empty()](
+                         const Mesh& body, const MayOpen& may_open, Monitor& monitor) {
         try {
-          return foamed(body, what, name, monitor);
+          return foamed(body, what, name, given, may_open, monitor);
         } catch (const Error& error) {
-          if (is_asked || error.code() != ExitCode::nothing_to_remove) throw;
+          if (error.code() != ExitCode::nothing_to_remove) throw;
+          if (is_asked)
+            throw NothingToRemoveError(std::string("no voids can be made in the body: ") + error.what(),
+                                       "leave out --fill for a plain body, or give a larger --stem");
           monitor.notice(std::string("the body stays plain: ") + error.what());
           return FoamedBody{body, ""};
         }
@@ -160,10 +141,12 @@ struct SupportCommand {
   }
 
   JobFiles files() const {
-    return {{{"model", model.path},
-             {"configuration file", config.path()},
-             {"process file", process_file_of(process)}},
-            {output}};
+    JobFiles files{{{"model", model.path},
+                    {"configuration file", config.path()},
+                    {"process file", process_file_of(process)}},
+                   {output}};
+    files.add_outputs(views.files());
+    return files;
   }
 
   void run() const {
@@ -176,9 +159,11 @@ struct SupportCommand {
   std::string process = "fdm";
   const CLI::Option* process_option;
   DirectionOption up;
+  OverhangOptions limits;
+  ViewOptions views;
   RunOptions run_options;
   std::string output;
-  std::optional<double> clearance, contact_gap, tooth, layer_height, plate;
+  std::optional<double> clearance, contact_gap, tooth, stem, layer_height, plate;
   std::string fill, parts;
   std::optional<double> extruder;
 };

@@ -119,6 +119,10 @@ void require_resolvable(const Mesh& model, double radius, double tolerance, cons
       "move the model nearer to the origin, raise --tolerance, or give a larger diameter");
 }
 
+bool may_open(const Tube& hole, const HollowOptions& options) {
+  return !options.may_open || options.may_open(hole);
+}
+
 bool is_among(std::span<const Tube> tubes, const Tube& tube) {
   return std::ranges::any_of(
       tubes, [&](const Tube& other) { return other.start == tube.start && other.end == tube.end; });
@@ -296,7 +300,8 @@ DrainedPacking drain(const PreparedModel& model, const SurfaceIndex& surface, Pa
   std::vector<Tube> refused;
   const auto can_open = [&](const EscapeHole& hole) {
     const WayOut way{hole.tube, packing.spheres[hole.from]};
-    return !is_among(refused, hole.tube) && may_be_cut(model.mesh, surface, way, roof, tolerance) &&
+    return !is_among(refused, hole.tube) && may_open(hole.tube, options) &&
+           may_be_cut(model.mesh, surface, way, roof, tolerance) &&
            !is_crossed_near(model.mesh, surface, hole.tube);
   };
   // Cutting takes longer than all the rest, so it is tried on a whole plan, and places where it fails, which
@@ -340,7 +345,8 @@ DrainedCells drain_cells(const PreparedModel& model, const SurfaceIndex& surface
     const auto [place, is_new] = known.try_emplace({static_cast<double>(from), tube.start.x, tube.start.y,
                                                     tube.start.z, tube.end.x, tube.end.y, tube.end.z});
     if (is_new)
-      place->second = may_be_cut(model.mesh, surface, cells.voids[from], tube, limits.roof, tolerance) &&
+      place->second = may_open(tube, options) &&
+                      may_be_cut(model.mesh, surface, cells.voids[from], tube, limits.roof, tolerance) &&
                       !is_crossed_near(model.mesh, surface, tube);
     return place->second;
   };

@@ -137,13 +137,12 @@ DrainageFindings inspect_drainage_of(const PreparedModel& read, const DrainageIn
                             .cups = std::nullopt,
                             .drains = false,
                             .verdict = {}};
-  PreparedModel model{read.input, read.mesh, read.inspection, std::nullopt, std::nullopt, {}, std::nullopt};
-  try {
-    model = make_usable(std::move(model), {.mode = SurfaceMode::keep}, monitor);
-  } catch (const MeshError& error) {
-    findings.verdict = fmt::format("cannot be told: {}; {}", error.what(), error.hint());
+  UsableCopy usable = usable_copy(read, monitor);
+  if (!usable.model) {
+    findings.verdict = std::move(usable.verdict);
     return findings;
   }
+  const PreparedModel& model = *usable.model;
   findings.air = inspect_drainage(model.mesh,
                                   {.up = inquiry.direction.up, .widest_hole = findings.widest_hole}, monitor);
   findings.sealed = sealed_in(model, findings.air->found);

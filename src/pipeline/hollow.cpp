@@ -214,10 +214,7 @@ HollowReport hollow(std::span<const JobForm> forms, Monitor& monitor, const Also
   if (pending) results.push_back(&pending->file());
   views.write([&] { return scene_of(best.hollowed, report); }, log);
   also(best, report, log);
-  log.check_interrupted();  // the last time that nothing is left behind
-  views.commit_with(std::move(results));
-  report.stages = log.finish();
-  report.notices = log.notices();
+  end_job(log, report, [&] { views.commit_with(std::move(results)); });
   return report;
 }
 

@@ -41,8 +41,7 @@ InspectedModel look_at(const InspectOptions& options, bool is_shown, JobLog& log
 InspectedModel inspect_to_show(const InspectOptions& options, Monitor& monitor) {
   JobLog log(monitor);
   InspectedModel inspected = look_at(options, true, log);
-  inspected.report.stages = log.finish();
-  inspected.report.notices = log.notices();
+  end_job(log, inspected.report, [] {});
   return inspected;
 }
 
@@ -52,9 +51,7 @@ InspectReport inspect_model(const InspectOptions& options, Monitor& monitor) {
   InspectedModel inspected = look_at(options, options.views.are_asked_for(), log);
   InspectReport report = std::move(inspected.report);
   views.write([&] { return scene_of(inspected.mesh, report); }, log);
-  views.commit_with({});
-  report.stages = log.finish();
-  report.notices = log.notices();
+  end_job(log, report, [&] { views.commit_with({}); });
   return report;
 }
 

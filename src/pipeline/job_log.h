@@ -39,4 +39,13 @@ class JobLog final : public Monitor {
   Clock::time_point begin_;
 };
 
+// The end of a job: `commit` makes its files appear, and the report gets what the log has.
+template <typename Report, typename Commit>
+void end_job(JobLog& log, Report& report, const Commit& commit) {
+  log.check_interrupted();  // the last time that nothing is left behind
+  commit();
+  report.stages = log.finish();
+  report.notices = log.notices();
+}
+
 }  // namespace aerate

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -145,6 +146,8 @@ struct HollowOptions {
   const SlicerProfile* support_blockers = nullptr;
   // If given, voids are joined by channels and opened by escape holes; else each is sealed.
   std::optional<DrainageRequest> drainage;
+  // If given, asked of each escape hole: one of which it is not true is not made.
+  std::function<bool(const Tube& hole)> may_open;
   Build build = Build::standing;
   bool opens_cavities = false;       // those that the model has itself; if voids drain
   std::optional<PlugRequest> plugs;  // if given, of voids that drain

@@ -25,19 +25,17 @@ std::string in_words(const Overhangs& overhangs) {
 
 OverhangFindings find_overhangs_of(const PreparedModel& read, const OverhangInquiry& inquiry,
                                    Monitor& monitor) {
-  OverhangFindings findings{inquiry, support_rules(inquiry.process), std::nullopt, {}};
+  OverhangFindings findings{inquiry, support_rules(inquiry.process, inquiry.given), std::nullopt, {}};
   if (!findings.rules) {
     findings.verdict = "needs no supports: the powder of " + inquiry.process.name + " carries it";
     return findings;
   }
-  PreparedModel model{read.input, read.mesh, read.inspection, std::nullopt, std::nullopt, {}, std::nullopt};
-  try {
-    model = make_usable(std::move(model), {.mode = SurfaceMode::keep}, monitor);
-  } catch (const MeshError& error) {
-    findings.verdict = fmt::format("cannot be told: {}; {}", error.what(), error.hint());
+  UsableCopy usable = usable_copy(read, monitor);
+  if (!usable.model) {
+    findings.verdict = std::move(usable.verdict);
     return findings;
   }
-  findings.overhangs = find_overhangs(model.mesh, *findings.rules, inquiry.direction.up, monitor);
+  findings.overhangs = find_overhangs(usable.model->mesh, *findings.rules, inquiry.direction.up, monitor);
   findings.verdict = in_words(*findings.overhangs);
   return findings;
 }

@@ -14,6 +14,7 @@ namespace aerate {
 struct OverhangInquiry {
   Process process;
   PrintDirection direction;
+  Limits given = {};  // the overhang angle and the bridge, where they are not the process's
 };
 
 struct OverhangFindings {

@@ -323,9 +323,8 @@ PackedShapes pack_shapes(const PackOptions& options, Monitor& monitor) {
         return scene_of(model, of_model, report, shapes ? &*shapes : nullptr, log);
       },
       log);
-  views.commit_with(file ? std::vector{&file->file()} : std::vector<PendingFile*>{});
-  report.stages = log.finish();
-  report.notices = log.notices();
+  end_job(log, report,
+          [&] { views.commit_with(file ? std::vector{&file->file()} : std::vector<PendingFile*>{}); });
   return packed;
 }
 

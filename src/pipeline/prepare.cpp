@@ -234,6 +234,15 @@ PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Moni
   return remesh(std::move(model), policy, monitor);
 }
 
+UsableCopy usable_copy(const PreparedModel& read, Monitor& monitor) {
+  PreparedModel model{read.input, read.mesh, read.inspection, std::nullopt, std::nullopt, {}, std::nullopt};
+  try {
+    return {make_usable(std::move(model), {.mode = SurfaceMode::keep}, monitor)};
+  } catch (const MeshError& error) {
+    return {std::nullopt, fmt::format("cannot be told: {}; {}", error.what(), error.hint())};
+  }
+}
+
 ModelUse use_of(PreparedModel model, const SurfacePolicy& policy) {
   NoticeList done;
   try {

@@ -61,6 +61,13 @@ PreparedModel load_and_inspect(const ModelSource& source, const LoadOptions& opt
 // does not let mend, or that remeshing would lose parts of.
 PreparedModel make_usable(PreparedModel model, const SurfacePolicy& policy, Monitor& monitor);
 
+// A copy of a model as it was read, made usable as it is, for questions that only a solid answers.
+struct UsableCopy {
+  std::optional<PreparedModel> model;
+  std::string verdict = {};  // without one: why it cannot be told
+};
+UsableCopy usable_copy(const PreparedModel& read, Monitor& monitor);
+
 // What hollowing will make of a model: whether its surface can be kept, or what stands in the way.
 struct ModelUse {
   std::string words;

@@ -22,9 +22,11 @@
 #include "kernels/roof_distance.h"
 #include "kernels/roofed_surface.h"
 #include "kernels/winding.h"
+#include "mesh/inspect.h"
 #include "mesh/topology.h"
 #include "pipeline/budget.h"
 #include "pipeline/print_verdict.h"
+#include "pipeline/support.h"
 #include "printing/carve.h"
 #include "printing/cells/shape_cells.h"
 
@@ -552,6 +554,27 @@ Scene scene_of(const Mesh& mesh, const InputFacts& input) {
   take_read_mesh(scene, mesh, input.inspection);
   scene.is = "printed solid";
   scene.figures = {{"model", size_of(scene.mesh)}, {"volume", volume(input.inspection.filled_volume)}};
+  return scene;
+}
+
+Scene scene_of(const Mesh& model_and_supports, const SupportReport& report) {
+  Scene scene;
+  scene.title = title_of(report.input);
+  take_read_mesh(scene, model_and_supports, inspect(model_and_supports));
+  scene.is = "with supports";
+  scene.up = report.direction.up;
+  scene.layer_height = report.rules.layer;
+  const bool are_ridges = report.shape.kind == ToothKind::ridge;
+  scene.figures = {
+      {"size", size_of(scene.mesh)},
+      {"overhangs",
+       fmt::format("{}, {:.0f} mm2", grouped(report.overhangs.regions.size()), report.overhangs.area())},
+      {"supports", report.foam.empty()
+                       ? volume(report.facts.volume)
+                       : fmt::format("{}, {} in it", volume(report.facts.volume), report.foam)},
+      {"teeth", fmt::format("{} {}", grouped(report.tooth_count), are_ridges ? "ridges" : "cones")},
+      {"contact", fmt::format("{:.0f} mm2", report.facts.contact_area)},
+      {"process", report.process.name}};
   return scene;
 }
 

@@ -14,6 +14,8 @@
 
 namespace aerate {
 
+struct SupportReport;
+
 // A result, as it was planned, carved and checked.
 Scene scene_of(const HollowedModel& hollowed, const HollowReport& report);
 
@@ -27,5 +29,8 @@ Scene scene_of(const Mesh& mesh, const InspectReport& report);
 
 // The same without, of a model that is printed solid.
 Scene scene_of(const Mesh& mesh, const InputFacts& input);
+
+// A model and the supports that were made for it, as one mesh.
+Scene scene_of(const Mesh& model_and_supports, const SupportReport& report);
 
 }  // namespace aerate

@@ -230,9 +230,7 @@ SliceReport slice_model(const SliceModelOptions& options, Monitor& monitor) {
 
   write_bytes(read_text(report.best().gcode), pending.file());
   views.write([&] { return scene_of_best(report, request.hollow, log); }, log);
-  views.commit_with({&pending.file()});
-  report.stages = log.finish();
-  report.notices = log.notices();
+  end_job(log, report, [&] { views.commit_with({&pending.file()}); });
   return report;
 }
 

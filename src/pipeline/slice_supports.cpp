@@ -74,6 +74,10 @@ SliceSupportsReport slice_supports(const SliceSupportsOptions& options, Monitor&
   if (!profile.modifiers || profile.modifiers->support_settings.empty())
     throw UsageError(fmt::format("{} reads no supports as a part", profile.name),
                      "write them with 'aerate support', and load both in the slicer");
+  if (!require_support_rules(options.support.process, options.support.given).is_filament)
+    throw UsageError(fmt::format("--supports: {} does not print what a slicer of filament makes",
+                                 options.support.process.name),
+                     "make supports by 'aerate support', or give --process fdm");
   SliceSupportsReport report;
   report.model = options.support.model;
   report.output = options.output;
@@ -105,10 +109,7 @@ SliceSupportsReport slice_supports(const SliceSupportsOptions& options, Monitor&
     }
   }
   write_bytes(read_text(runs.gcode_of(kOurs)), pending.file());
-  log.check_interrupted();  // the last time that nothing is left behind
-  pending.file().commit();
-  report.stages = log.finish();
-  report.notices = log.notices();
+  end_job(log, report, [&] { pending.file().commit(); });
   return report;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <utility>
 
 #include "check/same_triangles.h"
@@ -11,9 +12,12 @@
 #include "core/upright.h"
 #include "files/formats.h"
 #include "files/output_file.h"
+#include "kernels/triangle_bvh.h"
 #include "pipeline/announced_file.h"
 #include "pipeline/job_log.h"
 #include "pipeline/prepare.h"
+#include "pipeline/scene_of.h"
+#include "pipeline/view_files.h"
 
 namespace aerate {
 namespace {
@@ -37,8 +41,18 @@ double in_layers(double gap, double layer, Monitor& monitor) {
   return rounded;
 }
 
+// Half the width of bodies that voids drain in: no less than a hole and a wall take. What is wider leaves more material (docs/supports.md).
+double foot_with_voids(const Process& process, double usual) {
+  const auto channel = process.limits.find(Limit::channel), wall = process.limits.find(Limit::least_wall);
+  if (process.drainage != Drainage::needed || channel == process.limits.end() || wall == process.limits.end())
+    return usual;
+  return std::max(usual, (channel->second.value + wall->second.value) / 2);
+}
+
 SupportShape shape_for(const SupportOptions& options, const SupportRules& rules, Monitor& monitor) {
   SupportShape shape = usual_shape(rules);
+  if (options.foam) shape.body.foot = foot_with_voids(options.process, shape.body.foot);
+  if (options.stem) shape.body.foot = *options.stem / 2;
   if (options.clearance) shape.body.clearance = *options.clearance;
   if (options.tooth) shape.tooth.width = *options.tooth;
   shape.tooth.gap = in_layers(options.contact_gap.value_or(shape.tooth.gap), rules.layer, monitor);
@@ -50,7 +64,7 @@ SupportShape shape_for(const SupportOptions& options, const SupportRules& rules,
             "a contact gap of {:g} mm leaves more free than the clearance of {:g} mm, so that teeth would "
             "not reach out of the body",
             shape.tooth.gap, shape.body.clearance),
-        "give a smaller --contact-gap or a larger --clearance");
+        "give a smaller --contact-gap or --layer-height, or a larger --clearance");
   // So that the body keeps its clearance below what it holds.
   shape.body.tooth_height = shape.body.clearance + 0.4;
   return shape;
@@ -65,6 +79,9 @@ Mesh turned_back(Mesh mesh, const UprightFrame& frame) {
   return mesh;
 }
 
+// Of a model above its plate: no printer is so high.
+constexpr double kHighestLift = 1000;  // mm
+
 double plate_for(const SupportOptions& options, const Mesh& upright) {
   const double lowest = static_cast<double>(bounding_box(upright).lower.z);
   if (!options.plate) return lowest;
@@ -72,8 +89,36 @@ double plate_for(const SupportOptions& options, const Mesh& upright) {
     throw UsageError(fmt::format("--plate {:g}: the model begins {:g} mm below that, at {:g} mm along up",
                                  *options.plate, *options.plate - lowest, lowest),
                      "give no more than that, or leave it out for a plate at the model's lowest point");
+  if (*options.plate < lowest - kHighestLift)
+    throw UsageError(
+        fmt::format("--plate {:g}: the model begins {:g} mm above that, supports are no higher than {:g} mm",
+                    *options.plate, lowest - *options.plate, kHighestLift),
+        "give a plate nearer to the model");
   return *options.plate;
 }
+
+// Where holes drain: what runs out has room between the body and the plate, the model and the teeth.
+class RoomForHoles {
+ public:
+  RoomForHoles(const SurfaceIndex& model, const Mesh& teeth, double plate)
+      : model_(model), teeth_(teeth.positions, teeth.triangles), plate_(plate) {}
+
+  bool operator()(const Tube& hole) const {
+    // A ball as wide as the hole in front of it, and one in its mouth.
+    const Vec3d before = hole.end + direction_of(hole) * hole.radius;
+    const double squared = hole.radius * hole.radius;
+    const auto is_clear = [&](const kernels::TriangleBvhView& surface, Vec3d place) {
+      return surface.nearest(place, squared).distance_squared >= squared;
+    };
+    return before.z - hole.radius >= plate_ && is_clear(model_.bvh(), before) &&
+           is_clear(teeth_.view(), before) && is_clear(teeth_.view(), hole.end);
+  }
+
+ private:
+  const SurfaceIndex& model_;
+  kernels::HostTriangleBvh teeth_;
+  double plate_;
+};
 
 // Points between folds of a surface: of a real model few are left.
 constexpr double kMostLeft = 1;  // mm2
@@ -99,6 +144,30 @@ constexpr double kMostLeft = 1;  // mm2
       "give a smaller --contact-gap, print it another way --up, or let the slicer make supports there");
 }
 
+// Columns wider than what has to be held see no overhang, and hold none.
+double require_columns(const Mesh& upright, const SupportRules& rules) {
+  const double spacing = column_spacing(upright, rules);
+  if (spacing <= rules.reach) return spacing;
+  const Box3f box = bounding_box(upright);
+  throw MeshError(
+      fmt::format(
+          "the model is {:g} x {:g} mm seen from above, so large that overhangs are looked for {:.3g} mm "
+          "apart, and {:g} mm have to be held",
+          box.upper.x - box.lower.x, box.upper.y - box.lower.y, spacing, rules.reach),
+      "are --unit and --scale right? Make supports for pieces of it");
+}
+
+// Of a model so small that what hangs over on it is nearer to what holds it, whatever it is.
+NothingToRemoveError with_its_size(const NothingToRemoveError& error, const Mesh& upright,
+                                   const SupportRules& rules) {
+  const Box3f box = bounding_box(upright);
+  const Vec3d size = to_double(box.upper) - to_double(box.lower);
+  if (std::max(size.x, size.y) > 2 * rules.reach) return error;
+  return NothingToRemoveError(
+      fmt::format("{}; the model is {:.3g} x {:.3g} x {:.3g} mm", error.what(), size.x, size.y, size.z),
+      "are --unit and --scale right?");
+}
+
 // Drawn in less where bodies would tip over.
 Supports make_standing(const SurfaceIndex& model, const Undersides& undersides, const SupportRules& rules,
                        SupportShape& shape, Monitor& monitor) {
@@ -116,19 +185,29 @@ Supports make_standing(const SurfaceIndex& model, const Undersides& undersides, 
 }  // namespace
 
 SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
-  SupportRules rules = require_support_rules(options.process);
+  SupportRules rules = require_support_rules(options.process, options.given);
   const MeshFormat& format = format_to_write(options.output);
   if (options.parts_for != nullptr && &format != &MeshFormat::three_mf)
     throw UsageError(fmt::format("{}: model and supports as parts need a 3MF", options.output.string()),
                      "give a name that ends in .3mf, or leave out --parts");
   if (options.parts_for != nullptr && options.foam)
-    throw UsageError("--parts is for a plain body, whose settings leave out its infill; voids need it solid",
-                     "leave out --fill, or --parts");
+    throw UsageError(
+        "--fill makes voids, and --parts is for a plain body: its settings print one perimeter and next to "
+        "no "
+        "infill, so that there is nothing for voids to take",
+        "leave out --fill, or --parts");
+  if (options.parts_for != nullptr && !rules.is_filament)
+    throw UsageError(
+        fmt::format("--parts is for filament: its settings are of perimeters and infill, which {} "
+                    "does not print with",
+                    options.process.name),
+        "leave out --parts for supports alone, or give --process fdm");
   JobLog log(monitor);
   if (options.layer_height) rules.layer = *options.layer_height;
   SupportReport report;
   report.shape = shape_for(options, rules, log);
   AnnouncedFile pending(options.output, log);
+  ViewFiles views(options.views, log);
 
   PreparedModel model = load_and_inspect({options.model, nullptr}, options.load, log);
   model = make_usable(std::move(model), {.mode = SurfaceMode::keep, .weld = options.weld}, log);
@@ -141,16 +220,24 @@ SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
   log.stage("overhangs");
   const SurfaceIndex index(upright);
   const Undersides undersides =
-      find_undersides(upright, index.winding(), rules, plate, column_spacing(upright, rules));
+      find_undersides(upright, index.winding(), rules, plate, require_columns(upright, rules));
   report.overhangs = {undersides.spacing, overhang_regions(undersides, rules)};
   log.check_interrupted();
 
   log.stage("supports");
-  Supports supports = make_standing(index, undersides, rules, report.shape, log);
+  Supports supports = [&] {
+    try {
+      return make_standing(index, undersides, rules, report.shape, log);
+    } catch (const NothingToRemoveError& error) {
+      throw with_its_size(error, upright, rules);
+    }
+  }();
   Mesh body = std::move(supports.body);
   report.body_volume = signed_volume(body);
   if (options.foam && !body.triangles.empty()) {
-    FoamedBody foamed = options.foam(body, log);
+    log.stage("foam");
+    const RoomForHoles room(index, supports.teeth, plate);
+    FoamedBody foamed = options.foam(body, std::cref(room), log);
     body = std::move(foamed.mesh);
     report.foam = foamed.words;
   }
@@ -210,10 +297,8 @@ SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
   report.parts_for = options.parts_for;
   report.output = options.output;
   report.output_bytes = std::filesystem::file_size(pending.file().path());
-  log.check_interrupted();  // the last time that nothing is left behind
-  pending.file().commit();
-  report.stages = log.finish();
-  report.notices = log.notices();
+  views.write([&] { return scene_of(joined(own, made), report); }, log);
+  end_job(log, report, [&] { views.commit_with({&pending.file()}); });
   return report;
 }
 

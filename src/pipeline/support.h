@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "core/drainage.h"
 #include "core/mesh.h"
 #include "core/monitor.h"
 #include "files/load.h"
 #include "pipeline/input_facts.h"
 #include "pipeline/process_choice.h"
 #include "pipeline/report.h"
+#include "pipeline/view_outputs.h"
 #include "printing/slicers/slicers.h"
 #include "supports/check_supports.h"
 #include "supports/make_supports.h"
@@ -26,6 +28,9 @@ struct FoamedBody {
   std::string words;  // what it is, for the report
 };
 
+// Whether something can run out of a hole there.
+using MayOpen = std::function<bool(const Tube& hole)>;
+
 struct SupportOptions {
   std::filesystem::path model;
   std::filesystem::path output;
@@ -33,14 +38,19 @@ struct SupportOptions {
   std::optional<double> weld;  // see HollowOptions
   Process process;
   PrintDirection direction;
+  Limits given;  // the overhang angle and the bridge, where they are not the process's
   // Where not given, those of the process (supports/make_supports.h); millimetres.
   std::optional<double> clearance, contact_gap, tooth, layer_height;
+  // The width that the body is not drawn in below, mm. If not given, that of the process and, where voids drain, no less than a hole
+  // and a wall take.
+  std::optional<double> stem;
   std::optional<double> plate;  // its height along up; at the model's lowest point if not given
   // If given, one that has a format for parts: the model and the supports as parts of one object; the output has to be 3MF.
   const SlicerProfile* parts_for = nullptr;
   std::optional<int> extruder;  // that prints the supports, from 1; for parts
-  // If given, makes voids in the body. Throws what hollow() throws.
-  std::function<FoamedBody(const Mesh& body, Monitor& monitor)> foam;
+  // If given, makes voids in the body, with escape holes only where they may open. Throws what hollow() throws.
+  std::function<FoamedBody(const Mesh& body, const MayOpen& may_open, Monitor& monitor)> foam;
+  ViewOutputs views;
 };
 
 // Everything that `support` tells.

@@ -14,15 +14,16 @@ constexpr const char* kUnsupportedSource =
 
 }  // namespace
 
-std::optional<SupportRules> support_rules(const Process& process) {
-  const auto overhang = process.limits.find(Limit::overhang);
-  if (overhang == process.limits.end()) return std::nullopt;
+std::optional<SupportRules> support_rules(const Process& process, const Limits& given) {
+  if (!process.limits.contains(Limit::overhang)) return std::nullopt;
+  Limits limits = process.limits;
+  for (const auto& [limit, figure] : given) limits[limit] = {figure.value, figure.origin, figure.origin};
   SupportRules rules;
-  rules.degrees = overhang->second.value;
-  rules.degrees_source = overhang->second.source;
+  rules.degrees = limits.at(Limit::overhang).value;
+  rules.degrees_source = limits.at(Limit::overhang).source;
   rules.is_filament = process.drainage == Drainage::not_needed;
-  const auto bridge = process.limits.find(Limit::bridge);
-  if (bridge != process.limits.end()) {
+  const auto bridge = limits.find(Limit::bridge);
+  if (bridge != limits.end()) {
     rules.reach = bridge->second.value / 2;
     rules.reach_source = fmt::format("half the bridge ({})", bridge->second.source);
   } else {
@@ -34,8 +35,8 @@ std::optional<SupportRules> support_rules(const Process& process) {
   return rules;
 }
 
-SupportRules require_support_rules(const Process& process) {
-  if (auto rules = support_rules(process)) return *rules;
+SupportRules require_support_rules(const Process& process, const Limits& given) {
+  if (auto rules = support_rules(process, given)) return *rules;
   throw UsageError(fmt::format("{}: its powder carries what hangs over; there are no supports", process.name),
                    "choose a process that has an overhang angle: fdm, sla or metal");
 }

@@ -18,9 +18,10 @@ struct SupportRules {
 };
 
 // Nothing for a process whose powder carries the part: one without an overhang angle.
-std::optional<SupportRules> support_rules(const Process& process);
+//   given: an overhang angle and a bridge that go before the process's
+std::optional<SupportRules> support_rules(const Process& process, const Limits& given = {});
 
 // Throws UsageError for such a process, naming those that have supports.
-SupportRules require_support_rules(const Process& process);
+SupportRules require_support_rules(const Process& process, const Limits& given = {});
 
 }  // namespace aerate

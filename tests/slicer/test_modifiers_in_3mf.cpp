@@ -156,8 +156,17 @@ TEST_F(ModifiersIn3mf, SupportsAreAPartWithSettings) {
     EXPECT_EQ(slicer.modifiers->read(path), parts);
     settings.back().value = "1";
     EXPECT_NE(slicer.modifiers->read(path), support_parts(12, 12, settings));
+    // They are no part of the model when it is read again...
     const LoadedModel loaded = load_model(path, {.unit = {}, .volume_lists = volume_lists()});
-    EXPECT_EQ(signed_volume(loaded.mesh), 1000 + 500);
+    EXPECT_EQ(signed_volume(loaded.mesh), 1000);
+    EXPECT_EQ(loaded.part_count, 1U);
+    ASSERT_EQ(loaded.notices.size(), 1U);
+    EXPECT_EQ(loaded.notices[0], "'supports' is no part of the model, and left out");
+    // ...which bodies are that are called so, but are filled as the model is.
+    const auto others = file(
+        slicer.modifiers->file(both, parts.front(), support_parts(12, 12, {{"extruder", "2"}}).back(), ""));
+    EXPECT_EQ(signed_volume(load_model(others, {.unit = {}, .volume_lists = volume_lists()}).mesh),
+              1000 + 500);
   }
   EXPECT_EQ(count, 2u);
 }

@@ -55,6 +55,23 @@ TEST_F(SliceSupports, TakeLessThanTheSlicersOwn) {
   EXPECT_TRUE(contains(read_bytes(job.output("out.gcode")), "G1 "));
 }
 
+TEST_F(SliceSupports, FollowTheLimitsThatAreGiven) {
+  if (!is_installed("prusa-slicer")) GTEST_SKIP() << "prusa-slicer is not installed: nothing was sliced";
+  const ProcessResult result = slice({"--bridge", "60"});
+  EXPECT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_TRUE(contains(result.err, "more than 30 mm from what holds it"));
+  EXPECT_TRUE(std::filesystem::is_empty(job.outputs()));
+}
+
+TEST_F(SliceSupports, RefuseWhatNoSlicerPrints) {
+  EXPECT_EQ(slice({"--process", "sla"}).exit_code, 2);
+  EXPECT_EQ(slice({"--process", "sls"}).exit_code, 2);
+  const ProcessResult missing = slice({"--slicer-path", "/missing/slicer"});
+  EXPECT_EQ(missing.exit_code, 2) << missing.err;
+  EXPECT_TRUE(contains(missing.err, "/missing/slicer"));
+  EXPECT_TRUE(std::filesystem::is_empty(job.outputs()));
+}
+
 TEST_F(SliceSupports, RefuseWhatIsForVoids) {
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"--as", "voids"}, std::vector<std::string>{"--compare", "patterns"}}) {

@@ -61,7 +61,7 @@ CellDrainageGround::CellDrainageGround(const DrainableModel& drained, const Cell
       surfaces(model.surface, voids, kept, 2 * longest_hole(request, kept), model.kept),
       windows(find_cell_windows(voids, hollows, kept, request.channel_radius, surfaces, monitor)) {
   for (const double radius : {request.hole_radius, request.narrow_hole_radius})
-    if (radius > 0) ways.emplace_back(model, voids, hollows, kept, radius, surfaces);
+    if (radius > 0) ways.emplace_back(model, voids, hollows, kept, radius, surfaces, request.sides);
   for (const VoidHollows& one : hollows) volume += one.volume();
 }
 

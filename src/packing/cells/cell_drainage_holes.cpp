@@ -37,14 +37,16 @@ std::vector<Vec3d> directions_and_level_ones(Vec3d axis) {
 
 CellHoleWays::CellHoleWays(const DrainableModel& model, const CellVoids& cells,
                            const std::vector<VoidHollows>& hollows, const PackingLimits& limits,
-                           double radius, const CellSurfaces& surfaces)
+                           double radius, const CellSurfaces& surfaces, const HoleSides& sides)
     : cells_(cells),
       hollows_(hollows),
       up_(limits.roof.up),
       tubes_(hollows, limits, radius, surfaces, model.outward),
       directions_{directions_and_level_ones(-up_), directions_and_level_ones(up_)} {
-  // Below a roof few tubes lead upwards: one from high up that leads down is still a high one.
-  if (limits.roof.limits_ceilings()) {
+  // Below a roof few tubes lead upwards, and none where the top is ruled out: one from high up that leads down is still a high one.
+  const bool is_top_ruled_out =
+      std::ranges::any_of(sides.not_on, [&](Vec3d side) { return dot(side, up_) > std::numbers::sqrt2 / 2; });
+  if (limits.roof.limits_ceilings() || is_top_ruled_out) {
     std::vector<Vec3d>& high = directions_[kUpsideDown];
     high.insert(high.end(), directions_[kUpright].begin(), directions_[kUpright].end());
   }

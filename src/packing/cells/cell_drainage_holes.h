@@ -24,7 +24,8 @@ class CellHoleWays {
 
   // `hollows`: by void. All have to outlive this.
   CellHoleWays(const DrainableModel& model, const CellVoids& cells, const std::vector<VoidHollows>& hollows,
-               const PackingLimits& limits, double radius, const CellSurfaces& surfaces);
+               const PackingLimits& limits, double radius, const CellSurfaces& surfaces,
+               const HoleSides& sides);
 
   const WaysOut& tubes() const { return tubes_; }
 

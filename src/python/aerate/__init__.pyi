@@ -80,6 +80,8 @@ def inspect(
     weld: _Value = ...,
     process: _Value = ...,
     up: _Value = ...,
+    overhang: _Value = ...,
+    bridge: _Value = ...,
     build: _Value = ...,
     picture: _Value = ...,
     picture_cut: _Value = ...,
