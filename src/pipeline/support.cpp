@@ -51,7 +51,10 @@ double foot_with_voids(const Process& process, double usual) {
 
 SupportShape shape_for(const SupportOptions& options, const SupportRules& rules, Monitor& monitor) {
   SupportShape shape = usual_shape(rules);
-  if (options.foam) shape.body.foot = foot_with_voids(options.process, shape.body.foot);
+  if (options.foam) {
+    shape.body.foot = foot_with_voids(options.process, shape.body.foot);
+    shape.body.least_voxel = 0;
+  }
   if (options.stem) shape.body.foot = *options.stem / 2;
   if (options.clearance) shape.body.clearance = *options.clearance;
   if (options.tooth) shape.tooth.width = *options.tooth;

@@ -23,8 +23,6 @@ namespace {
 constexpr double kSlender = 6;
 // Over so many layers from the plate a foot widens.
 constexpr int kFootLayers = 8;
-// No finer voxels are of use, mm.
-constexpr double kLeastVoxel = 0.45;
 // Smaller pieces are crumbs, mm3.
 constexpr double kCrumb = 2;
 
@@ -392,9 +390,9 @@ Mesh support_body(const SurfaceIndex& model, const Undersides& undersides, const
     carried.push_back({at.x, at.y, at.z, undersides.spans[span].floor});
   }
   // Overhangs are looked at more closely than the body needs to be.
-  const bool is_fine = undersides.spacing < kLeastVoxel;
+  const bool is_fine = undersides.spacing < shape.least_voxel;
   const Undersides coarser =
-      is_fine ? columns_of(model.winding(), undersides.plate, kLeastVoxel) : Undersides{};
+      is_fine ? columns_of(model.winding(), undersides.plate, shape.least_voxel) : Undersides{};
   const Undersides& columns = is_fine ? coarser : undersides;
   const double size = columns.spacing;
   std::vector<std::array<int, 3>> voxels = body_voxels(columns, carried, shape, monitor);

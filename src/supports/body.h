@@ -19,6 +19,8 @@ struct BodyShape {
   double tooth_height = 1.2;  // between the body and the ceilings that its teeth reach to, mm
   double foot = 2;            // half the width that it is not drawn in below, and its foot, mm
   double margin = 1.05;       // round what it carries, at its top, mm
+  double least_voxel =
+      0.45;  // no finer voxels than this are of use, mm; in finer ones more voids find a place
 };
 
 // The supports without their teeth: from below what they carry to the plate, or onto the model where that is in the way. On the way
