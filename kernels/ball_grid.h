@@ -365,6 +365,7 @@ class BallGrid {
     executor_.for_each_index(count, SetAll<std::uint32_t>{view_.heads, kNone});
     executor_.for_each_index(1, SetAll<std::uint32_t>{entry_count_.view(), 0});
     entries_.clear();
+    view_.entries = {};
     // Where a cell's balls end is where the next one's begin: one array counts them, says where the next
     // ball goes, and has all starts in the end, the first of which is 0.
     const View<std::uint32_t> starts{starts_.view().data, count + 1};
