@@ -28,7 +28,7 @@ struct IdlePath {
     return {static_cast<float>(path.x), static_cast<float>(path.y), static_cast<float>(path.z), 1};
   }
   static AERATE_HD IdlePath none() { return {0, 0, 0, 0}; }
-  AERATE_HD Vec3d path() const { return {x, y, z}; }
+  AERATE_HD Vec3d path() const { return to_double(Vec3f{x, y, z}); }
 };
 
 namespace idle_detail {
