@@ -100,8 +100,7 @@ void add_row(Run& run, const std::string& model, const std::string& packer, cons
   const auto [least, most] = std::ranges::minmax(packed.spheres, {}, &Sphere::radius);
   run.table.add({model, packer, grouped(static_cast<double>(packed.spheres.size())),
                  fmt::format("{:.3g} to {:.3g}", least.radius, most.radius),
-                 hundredths(density_of(mesh, packed.spheres)), hundredths(packed.seconds),
-                 fmt::format("{} {} {}", broken.wall, broken.gap, broken.winding)});
+                 hundredths(density_of(mesh, packed.spheres)), hundredths(packed.seconds), to_cell(broken)});
 }
 
 // The adaptive packing between the same least and largest radii.
@@ -135,7 +134,7 @@ int run(const Arguments& arguments) {
   const std::filesystem::path models = arguments.text(0, "../shared/models");
   const bool yade = has_yade();
   if (!yade) fmt::print(stderr, "yade is not installed: its rows are left out\n");
-  Table table({"model", "packing", "spheres", "radii, mm", "density %", "s", "broken: walls, gaps, winding"});
+  Table table({"model", "packing", "spheres", "radii, mm", "density %", "s", kViolationsTitle});
   Run run{table};
   for (const Model& model : {Model{"cube of 10 mm", "cube.stl", 0.2, 0.3, 1000, 0.05},
                              Model{"dinosaur", "dino.off", 0.06, 0.3, 1000, 0.02}}) {
@@ -146,10 +145,7 @@ int run(const Arguments& arguments) {
     }
     add_model(model, load_model(path).mesh, yade, run);
   }
-  if (run.broken > 0) {
-    fmt::print(stderr, "{} walls, gaps and winding numbers are broken\n", run.broken);
-    return 1;
-  }
+  if (!report_broken(run.broken)) return 1;
   if (!yade && arguments.wants_figures()) return 1;
   write_figures(arguments, table.markdown(), "");
   return 0;

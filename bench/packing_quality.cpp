@@ -1,5 +1,7 @@
 #include "bench/packing_quality.h"
 
+#include <cstdio>
+#include <fmt/format.h>
 #include <vector>
 
 #include "core/surface_index.h"
@@ -22,6 +24,15 @@ Violations count_violations(const Mesh& mesh, std::span<const Sphere> spheres, c
     if (pair.gap < limits.gap - slack) ++violations.gap;
   }
   return violations;
+}
+
+std::string to_cell(const Violations& violations) {
+  return fmt::format("{} {} {}", violations.wall, violations.gap, violations.winding);
+}
+
+bool report_broken(std::size_t broken) {
+  if (broken > 0) fmt::print(stderr, "{} walls, gaps and winding numbers are broken\n", broken);
+  return broken == 0;
 }
 
 double density_of(const Mesh& mesh, std::span<const Sphere> spheres) {

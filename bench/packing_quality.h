@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 
 #include "core/mesh.h"
 #include "core/packing.h"
@@ -20,6 +21,13 @@ struct Violations {
 // outside. The slack is 0 for us, and for a peer what its fp32 centres and radii explain.
 Violations count_violations(const Mesh& mesh, std::span<const Sphere> spheres, const PackingLimits& limits,
                             double slack);
+
+// As a cell under kViolationsTitle.
+inline constexpr const char* kViolationsTitle = "broken: walls, gaps, winding";
+std::string to_cell(const Violations& violations);
+
+// Says on the error output how many are broken in all; false if any are.
+bool report_broken(std::size_t broken);
 
 // Percent of the model's volume.
 double density_of(const Mesh& mesh, std::span<const Sphere> spheres);

@@ -106,9 +106,10 @@ class IdleCells {
  public:
   explicit IdleCells(const Executor& executor) : executor_(executor) {}
 
-  // For balls that are placed in the box.
+  // For balls that are placed in the box beside those that stand there, which are so many.
   //   near: from where a ball was moved to the centres of those that may stop it, mm
-  void reset(const Box3d& box, double near, double least_cell) {
+  void reset(const Box3d& box, double near, double least_cell, std::size_t known_balls) {
+    known_balls_ = known_balls;
     near_ = near;
     new_balls_.cells = make_cell_grid(box, max_of(2 * near, least_cell));
     heads_ = executor_.template allocate<std::uint32_t>(new_balls_.cells.cell_count());
@@ -116,11 +117,13 @@ class IdleCells {
   }
 
   // Of a list of cells those to be searched, ascending as they were, valid until the next call.
-  //   tidied:    how often the tree has given its cells new numbers; all are awake then
-  //   new_balls: those placed since the last call
+  //   tidied: how often the tree has given its cells new numbers; all are awake then
+  //   balls:  all that stand; those before that were known to the last call are the same
   View<const std::uint32_t> awake(const CellsView& cells, View<const std::uint32_t> list, std::size_t tidied,
-                                  View<const Ball> new_balls) {
+                                  GrowingBuffer<Executor, Ball>& balls) {
     using namespace idle_detail;
+    const View<const Ball> new_balls = balls.view_from(known_balls_);
+    known_balls_ = balls.size();
     if (tidied != tidied_) paths_.clear();
     tidied_ = tidied;
     const std::size_t known = paths_.size();
@@ -149,6 +152,7 @@ class IdleCells {
   const Executor& executor_;
   double near_ = 0;
   std::size_t tidied_ = 0;
+  std::size_t known_balls_ = 0;
   idle_detail::NewBalls new_balls_{};
   typename Executor::template Buffer<std::uint32_t> heads_;
   GrowingBuffer<Executor, IdlePath> paths_;

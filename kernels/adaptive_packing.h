@@ -244,8 +244,7 @@ class AdaptivePacker {
     threshold_ = settling.least();
     // Balls that are placed stop what is pulled past them; ways are straight to about half a radius.
     const double touching = shape_.span(2 * settling.radius + parameters_.gap, settling.radius);
-    idle_.reset(box_, touching + 0.5 * settling.radius, grid_.least_cell(box_));
-    searched_for_balls_ = balls_.size();
+    idle_.reset(box_, touching + 0.5 * settling.radius, grid_.least_cell(box_), balls_.size());
     std::size_t before = 0;
     do {
       before = balls_.size();
@@ -375,10 +374,7 @@ class AdaptivePacker {
     using namespace adaptive_detail;
     View<const std::uint32_t> cells =
         tree_.refine(field(), threshold_, fineness(settling).cell * threshold_, max_of(least_radius_, 0.0));
-    if (settling != nullptr) {
-      cells = idle_.awake(tree_.view(), cells, tree_.tidied(), balls_.view_from(searched_for_balls_));
-      searched_for_balls_ = balls_.size();
-    }
+    if (settling != nullptr) cells = idle_.awake(tree_.view(), cells, tree_.tidied(), balls_);
     if (cells.size == 0) return false;
     search_count_ += cells.size;
     search(cells, settling);
@@ -465,7 +461,6 @@ class AdaptivePacker {
   BallOrder<Executor> ball_order_;
   CellTree<Executor, Shape> tree_;
   IdleCells<Executor> idle_;
-  std::size_t searched_for_balls_ = 0;  // so many stood when cells were last chosen to settle balls from
   CandidateSelection<Executor, Shape> selection_;
   GrowingBuffer<Executor, Ball> balls_;
   GrowingBuffer<Executor, Candidate> searched_, candidates_;

@@ -53,6 +53,12 @@ Footprint::Edge Footprint::nearest_edge(double x, double y) const {
   return nearest;
 }
 
+std::optional<Footprint> footprint_around(std::vector<Point> points) {
+  std::vector<Point> hull = convex_hull(std::move(points));
+  if (hull.size() < 3) return std::nullopt;
+  return Footprint(std::move(hull));
+}
+
 std::optional<Footprint> footprint_of(const Mesh& mesh) {
   const Box3f box = bounding_box(mesh);
   const double ground = static_cast<double>(box.lower.z);
@@ -65,9 +71,7 @@ std::optional<Footprint> footprint_of(const Mesh& mesh) {
       if (p.z <= ground + contact_height) contact.push_back({p.x, p.y});
     }
   }
-  std::vector<Point> hull = convex_hull(std::move(contact));
-  if (hull.size() < 3) return std::nullopt;
-  return Footprint(std::move(hull));
+  return footprint_around(std::move(contact));
 }
 
 std::optional<double> footing_margin(const Mesh& mesh, Vec3d centre_of_mass) {

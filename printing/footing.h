@@ -33,6 +33,9 @@ class Footprint {
   std::vector<Point> corners_;
 };
 
+// The convex hull of points. Nothing if that has no area.
+std::optional<Footprint> footprint_around(std::vector<Footprint::Point> points);
+
 // The convex hull of what stands on the ground: of vertices no higher than a hundredth of the mesh's height above its lowest
 // point. Nothing if that has no area (a tip or an edge). `mesh`: the outer surface
 std::optional<Footprint> footprint_of(const Mesh& mesh);

@@ -73,8 +73,8 @@ std::vector<std::vector<std::string>> ways(Fill fill, const std::string& name, c
   usual.emplace_back("--holes-not-on=top");  // there are the teeth, and the model above them
   const auto channel = process.limits.find(Limit::channel);
   if (fill != Fill::cells || channel == process.limits.end()) return {usual};
-  // One void in each body, where it is as wide as a channel somewhere: into all that is no narrower than walls have to be, or no
-  // narrower than a channel, which is simpler to open. Where neither takes much, all that `hollow` tries. Below roofs it is less narrow.
+  // One void in each body, where it is as wide as a channel somewhere: into all that is no narrower than walls have to be, than two of them,
+  // or than a channel, since what is less narrow is simpler to drain. Where none takes much, all that `hollow` tries. Below roofs it is less narrow.
   const double radius = channel->second.value / 2;
   const auto single = [&](double fillet) {
     std::vector<std::string> arguments = usual;
@@ -83,7 +83,7 @@ std::vector<std::vector<std::string>> ways(Fill fill, const std::string& name, c
     return arguments;
   };
   if (process.limits.contains(Limit::bridge)) return {single(radius / 2), usual};
-  return {single(wall), single(radius), usual};
+  return {single(wall), single(2 * wall), single(radius), usual};
 }
 
 // Of a body: other ways are worth their time where less is taken.

@@ -54,6 +54,10 @@ SupportShape shape_for(const SupportOptions& options, const SupportRules& rules,
   if (options.foam) {
     shape.body.foot = foot_with_voids(options.process, shape.body.foot);
     shape.body.least_voxel = 0;
+    // Roots reach into walls, not through them.
+    const auto wall = options.process.limits.find(Limit::least_wall);
+    if (wall != options.process.limits.end())
+      shape.tooth.embedded = std::min(shape.tooth.embedded, wall->second.value);
   }
   if (options.stem) shape.body.foot = *options.stem / 2;
   if (options.clearance) shape.body.clearance = *options.clearance;
@@ -68,6 +72,8 @@ SupportShape shape_for(const SupportOptions& options, const SupportRules& rules,
             "not reach out of the body",
             shape.tooth.gap, shape.body.clearance),
         "give a smaller --contact-gap or --layer-height, or a larger --clearance");
+  // What is joined to the model and to the plate cannot tip.
+  shape.body.stands_alone = shape.tooth.gap > 0;
   // So that the body keeps its clearance below what it holds.
   shape.body.tooth_height = shape.body.clearance + 0.4;
   return shape;
@@ -171,20 +177,6 @@ NothingToRemoveError with_its_size(const NothingToRemoveError& error, const Mesh
       "are --unit and --scale right?");
 }
 
-// Drawn in less where bodies would tip over.
-Supports make_standing(const SurfaceIndex& model, const Undersides& undersides, const SupportRules& rules,
-                       SupportShape& shape, Monitor& monitor) {
-  constexpr int kTries = 4;
-  Supports supports = make_supports(model, undersides, rules, shape, monitor);
-  for (int i = 1; i < kTries && shape.tooth.gap > 0; ++i) {
-    const auto margin = least_footing_margin(supports.body, supports.body.triangles, undersides.plate);
-    if (!margin || *margin >= 0) break;
-    shape.body.foot *= 2;
-    supports = make_supports(model, undersides, rules, shape, monitor);
-  }
-  return supports;
-}
-
 }  // namespace
 
 SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
@@ -230,7 +222,7 @@ SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
   log.stage("supports");
   Supports supports = [&] {
     try {
-      return make_standing(index, undersides, rules, report.shape, log);
+      return make_supports(index, undersides, rules, report.shape, log);
     } catch (const NothingToRemoveError& error) {
       throw with_its_size(error, upright, rules);
     }

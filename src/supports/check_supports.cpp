@@ -17,6 +17,7 @@
 #include "mesh/inspect.h"
 #include "mesh/topology.h"
 #include "printing/footing.h"
+#include "supports/body_voxels.h"
 
 namespace aerate {
 namespace {
@@ -92,7 +93,9 @@ bool is_touched(const kernels::WindingView& model, double x, double y, double z,
 
 }  // namespace
 
-std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body, double plate) {
+std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body,
+                                           const Undersides& columns, double clearance) {
+  constexpr double kOnPlate = 0.1;  // mm, of what stands there
   const Mesh alone = submesh(mesh, body);
   const EdgeUses uses(alone);
   const ShellLabels labels = label_shells(alone, uses);
@@ -102,10 +105,18 @@ std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Tri
   std::optional<double> least;
   for (const std::vector<Triangle>& triangles : shells) {
     const Mesh shell = submesh(alone, triangles);
-    if (static_cast<double>(bounding_box(shell).lower.z) > plate + 0.01) continue;
+    if (static_cast<double>(bounding_box(shell).lower.z) > columns.plate + 0.01) continue;
+    std::vector<Footprint::Point> feet;
+    for (const Vec3f& p : shell.positions) {
+      const Vec3d at = to_double(p);
+      const auto column = columns.column_at(at.x, at.y);
+      if (at.z <= columns.plate + kOnPlate || (column && stands_on_model(columns, *column, at.z, clearance)))
+        feet.push_back({at.x, at.y});
+    }
     const VolumeMoments moments = volume_moments(shell);
-    const auto margin = footing_margin(shell, moments.first_moment * (1 / moments.volume));
-    least = std::min(least.value_or(kInfinity), margin.value_or(-1));
+    const Vec3d centre = moments.first_moment * (1 / moments.volume);
+    const std::optional<Footprint> foot = footprint_around(std::move(feet));
+    least = std::min(least.value_or(kInfinity), foot ? foot->margin(centre.x, centre.y) : -1);
   }
   return least;
 }
@@ -187,7 +198,7 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
     if (facts.body_distance < shape.body.clearance - kClearanceTolerance - kRounding)
       fail_check("the body is {:.3g} mm from the model, {:.3g} mm were asked for", facts.body_distance,
                  shape.body.clearance);
-    facts.footing_margin = least_footing_margin(written, body, columns.plate);
+    facts.footing_margin = least_footing_margin(written, body, columns, shape.body.clearance);
     // What is joined to the model and to the plate cannot tip.
     if (shape.tooth.gap > 0 && facts.footing_margin && *facts.footing_margin < 0)
       fail_check("a body tips over: its centre of mass is {:.2f} mm outside of its foot",

@@ -36,9 +36,12 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
                             const Undersides& undersides, const SupportRules& rules,
                             const SupportShape& shape, bool has_voids, Monitor& monitor);
 
-// Of the bodies that stand on the plate, how far inside of its foot each one's centre of mass is: the least, mm; nothing if none stands there.
+// Of the bodies that stand on the plate, how far inside of its feet there and on the model each one's centre of mass is: the least, mm; nothing
+// if none stands there.
 //   body: some triangles of the mesh, closed shells
-std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body, double plate);
+//   undersides: of the model
+std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body,
+                                           const Undersides& undersides, double clearance);
 
 // How much of a model's underside is so near to what is below, and how far overhangs are from that and from what else holds them,
 // whoever made it.

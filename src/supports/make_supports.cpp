@@ -16,7 +16,7 @@ SupportShape usual_shape(const SupportRules& rules) {
     shape.tooth = {.width = 0.5, .gap = 0.2, .penetration = 0, .embedded = 0.9, .least_height = 0.18};
   } else {
     shape.kind = ToothKind::cone;
-    shape.body = {.clearance = 0.8, .tooth_height = 1.2, .foot = 2, .margin = 0.6};
+    shape.body = {.clearance = 0.8, .tooth_height = 1.2, .foot = 2, .margin = 0.6, .stands_alone = false};
     shape.tooth = {.width = 0.4, .gap = 0, .penetration = 0.1, .embedded = 0.9, .least_height = 0.045};
   }
   return shape;

@@ -48,7 +48,7 @@ bool holds(const Undersides& columns, std::int64_t x, std::int64_t y) {
   return x >= 0 && y >= 0 && x < columns.count_x && y < columns.count_y;
 }
 
-std::size_t column_at(const Undersides& columns, std::uint32_t span, int dx, int dy) {
+std::size_t column_beside(const Undersides& columns, std::uint32_t span, int dx, int dy) {
   const std::int64_t x = std::int64_t{columns.x_of(span)} + dx, y = std::int64_t{columns.y_of(span)} + dy;
   return holds(columns, x, y) ? columns.column(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))
                               : static_cast<std::size_t>(columns.count_x) * columns.count_y;
@@ -89,7 +89,7 @@ std::vector<bool> reached_from_outside(const Undersides& columns) {
     const std::uint32_t span = open.back();
     open.pop_back();
     for (std::size_t k = 0; k < 4; ++k) {
-      const std::size_t other = column_at(columns, span, kSteps[k].dx, kSteps[k].dy);
+      const std::size_t other = column_beside(columns, span, kSteps[k].dx, kSteps[k].dy);
       if (!is_a_column(columns, other)) continue;
       for (std::uint32_t j = columns.first[other]; j < columns.first[other + 1]; ++j) {
         if (columns.spans[j].floor < columns.spans[span].ceiling &&
@@ -123,7 +123,7 @@ void find_holds(Undersides& columns, const SupportRules& rules) {
         z <= columns.spans[span].floor + kLeastLayers * rules.layer)
       columns.hold[i] = Hold::angle;
     for (const Step& step : kSteps) {
-      const std::size_t other = column_at(columns, span, step.dx, step.dy);
+      const std::size_t other = column_beside(columns, span, step.dx, step.dy);
       const double lower = step.length * fall;
       if (is_a_column(columns, other) && is_filled(columns, other, z - lower, z - 0.5 * lower))
         columns.hold[i] = Hold::angle;
@@ -154,7 +154,7 @@ void find_tips(Undersides& columns, const SupportRules& rules) {
       lowest[sets.root(span)] = low;
     }
     for (const Step& step : kSteps) {
-      const std::size_t other = column_at(columns, span, step.dx, step.dy);
+      const std::size_t other = column_beside(columns, span, step.dx, step.dy);
       if (!is_a_column(columns, other)) continue;
       for (std::uint32_t j = columns.first[other]; j + 1 < columns.first[other + 1]; ++j) {
         if (columns.spans[j].ceiling > z || lowest[sets.root(j)] == kNoSpan) break;
@@ -246,9 +246,21 @@ bool Undersides::is_solid(std::size_t column, double z) const {
   return false;
 }
 
+double Undersides::height_above_model(std::size_t column, double z) const {
+  for (std::uint32_t i = first[column]; i < first[column + 1]; ++i)
+    if (spans[i].floor < z && z < spans[i].ceiling) return z - spans[i].floor;
+  return kInfinity;
+}
+
+std::optional<std::size_t> Undersides::column_at(double x, double y) const {
+  const long at_x = std::lround((x - origin_x) / spacing), at_y = std::lround((y - origin_y) / spacing);
+  if (!holds(*this, at_x, at_y)) return std::nullopt;
+  return column(static_cast<std::uint32_t>(at_x), static_cast<std::uint32_t>(at_y));
+}
+
 std::uint32_t Undersides::next(std::uint32_t span, int dx, int dy) const {
   constexpr double kSteepest = 3;  // a wall is no part of it
-  const std::size_t other = column_at(*this, span, dx, dy);
+  const std::size_t other = column_beside(*this, span, dx, dy);
   if (!is_a_column(*this, other)) return kNoSpan;
   std::uint32_t best = kNoSpan;
   double least = kSteepest * spacing * (dx != 0 && dy != 0 ? std::numbers::sqrt2 : 1);

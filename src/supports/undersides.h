@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/mesh.h"
@@ -48,6 +49,10 @@ struct Undersides {
 
   // Whether the model is at this height of a column.
   bool is_solid(std::size_t column, double z) const;
+  // How high above the model below a place in the air of a column is; kInfinity above the plate alone.
+  double height_above_model(std::size_t column, double z) const;
+  // The nearest one; none beside the grid.
+  std::optional<std::size_t> column_at(double x, double y) const;
   // The span of a neighbouring column whose ceiling goes on that of `span`, at (dx, dy) in columns; kNoSpan if none.
   std::uint32_t next(std::uint32_t span, int dx, int dy) const;
 };

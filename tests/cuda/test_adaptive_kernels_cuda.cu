@@ -422,8 +422,9 @@ SettleStages settle(const Executor& executor, const Job& job) {
   executor.for_each_index(starts.size(), SetAll<std::uint8_t>{found.view(), 1});
   const CellsView view{cells.view(), {}, 1};
   IdleCells<Executor> idle(executor);
-  idle.reset(job.input.box, 1.0, 0.1);
-  const std::size_t all = idle.awake(view, list.view(), 0, {}).size;
+  GrowingBuffer<Executor, Ball> balls;
+  idle.reset(job.input.box, 1.0, 0.1, balls.size());
+  const std::size_t all = idle.awake(view, list.view(), 0, balls).size;
   executor.for_each_index(all, Settle<BallShape>{view, list.view(), packed.field(), settling, 1e-12,
                                                  candidates.view(), found.view(), idle.paths()});
   SettleStages stages{bytes_at(executor, candidates.view()),
@@ -432,8 +433,10 @@ SettleStages settle(const Executor& executor, const Job& job) {
                       {}};
   // Some balls are placed near some ways.
   const std::vector<Ball> placed{{points[100], 0.4}, {points[1500], 0.4}};
-  auto balls = executor.upload(std::span<const Ball>(placed));
-  auto chosen = idle.awake(view, list.view(), 0, balls.view());
+  const auto uploaded = executor.upload(std::span<const Ball>(placed));
+  balls.resize(executor, placed.size());
+  executor.for_each_index(placed.size(), CopyElements<Ball>{uploaded.view(), balls.view()});
+  auto chosen = idle.awake(view, list.view(), 0, balls);
   stages.awake = bytes_at(executor, chosen);
   return stages;
 }

@@ -49,9 +49,9 @@ Mesh tee() {
   return join(make_box({25, 0, 0}, {35, 20, 30}), make_box({0, 0, 30}, {60, 20, 36}));
 }
 
-// An arm over a foot of the model.
-Mesh shelf() {
-  Mesh mesh = join(make_box({0, 0, 0}, {50, 20, 8}), make_box({0, 0, 8}, {10, 20, 36}));
+// An arm over a foot of the model, by default as long as it.
+Mesh shelf(float foot = 50) {
+  Mesh mesh = join(make_box({0, 0, 0}, {foot, 20, 8}), make_box({0, 0, 8}, {10, 20, 36}));
   return join(mesh, make_box({10, 0, 30}, {50, 20, 36}));
 }
 
@@ -68,6 +68,45 @@ TEST(MakeSupports, RidgesLeaveNoCeilingFarFromThem) {
   EXPECT_GT(facts.body_distance, 0.75);
   ASSERT_TRUE(facts.footing_margin);
   EXPECT_GT(*facts.footing_margin, 1);
+}
+
+// A table on a leg whose side leans out by 75 degrees below it, so that what goes down from the table is pushed away.
+Mesh leaning_table() {
+  Mesh leg = make_box({0, 0, 0}, {23, 20, 60});
+  for (Vec3f& p : leg.positions)
+    if (p.x > 0 && p.z > 0) p.x = 8;
+  return join(leg, make_box({0, 0, 60}, {34, 20, 66}));
+}
+
+Mesh beside(Mesh mesh, float by) {
+  for (Vec3f& p : mesh.positions) p.x += by;
+  return mesh;
+}
+
+double body_volume(Mesh model) {
+  Supported made(std::move(model));
+  made.make();
+  const SupportFacts facts = made.check(made.mesh());
+  EXPECT_EQ(facts.unsupported_area, 0);
+  EXPECT_GE(facts.footing_margin.value_or(0), 0);
+  return facts.volume;
+}
+
+TEST(MakeSupports, WhatStandsOnThePlateAndOnTheModelNeedsNoWiderFoot) {
+  EXPECT_LT(body_volume(shelf(40)), 1.1 * body_volume(shelf()));
+}
+
+TEST(MakeSupports, OnlyBodiesThatTipAreDrawnInLess) {
+  const double leaning = body_volume(leaning_table()), other = body_volume(tee());
+  EXPECT_GT(leaning, 10000);  // drawn in as others are it would fall over
+  EXPECT_NEAR(body_volume(join(leaning_table(), beside(tee(), 60))), leaning + other, 0.05 * other);
+}
+
+TEST(MakeSupports, ABodyIsAsWideAsItsOwnHeightNeeds) {
+  Mesh tall = tee();
+  for (Vec3f& p : tall.positions) p.z *= 4;
+  EXPECT_NEAR(body_volume(join(tall, beside(tee(), 80))), body_volume(tall) + body_volume(tee()),
+              0.02 * body_volume(tee()));
 }
 
 Mesh turned_about_z(Mesh mesh, double degrees) {
