@@ -25,7 +25,7 @@ namespace {
 // Columns are told apart to half of one on each side.
 constexpr double kColumnsOff = 1.5;
 // What of supports' own underside may be held by nothing: corners that smoothing leaves, mm2.
-constexpr double kMostOwn = 10;
+constexpr double kMostOwn = 5;
 // Of coordinates in a file, mm.
 constexpr double kRounding = 1e-3;
 
