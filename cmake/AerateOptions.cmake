@@ -35,6 +35,13 @@ endif()
 function(aerate_add_library name)
   add_library(${name} STATIC ${ARGN})
   target_link_libraries(${name} PUBLIC aerate_options)
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${name} PROPERTIES
+    POSITION_INDEPENDENT_CODE ON
+    UNITY_BUILD ${AERATE_UNITY_BUILD}
+    UNITY_BUILD_BATCH_SIZE 8)
+  if(AERATE_UNITY_BUILD)
+    # To the compiler the sources are headers of the batch.
+    target_compile_options(${name} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+  endif()
   target_compile_options(${name} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang>:-fno-semantic-interposition>)
 endfunction()

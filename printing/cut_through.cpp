@@ -14,7 +14,7 @@ namespace aerate {
 namespace {
 
 // A prism begins this much behind its ring, mm.
-constexpr double kPrismMargin = 0.02;
+constexpr double kBehindRing = 0.02;
 
 // Counter-clockwise about the tube's axis, in the plane through its middle.
 std::vector<Vec3f> ring_of(const Tube& tube, std::size_t sides) {
@@ -37,8 +37,8 @@ CuttingPrism prism_to(Vec3d end, const Tube& tube, std::vector<Vec3f> ring) {
   CuttingPrism prism;
   prism.ring = std::move(ring);
   prism.axis = normalised(end - middle);
-  prism.start = middle - prism.axis * kPrismMargin;
-  prism.length = length(end - middle) + kPrismMargin + kCutBeyond * tube.radius;
+  prism.start = middle - prism.axis * kBehindRing;
+  prism.length = length(end - middle) + kBehindRing + kCutBeyond * tube.radius;
   prism.radius = tube.radius;
   return prism;
 }

@@ -28,8 +28,6 @@ constexpr double kSecondsPerContour = 0.25;
 // Differences of the time below this share are not told.
 constexpr double kSameTime = 0.05;
 
-constexpr double kPi = std::numbers::pi;
-
 }  // namespace
 
 FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
@@ -75,11 +73,11 @@ FilamentUse use_of_lone_void(double radius, const PrintSettings& settings) {
     if (rules.bottom_layers > 0) end = std::max(end, skin(k, -1));
     if (end <= 0) continue;
     const double wall = own > 0 ? own + rules.wall : 0, sparse = end + half_line;
-    use.wall_mm3 += h * kPi * (wall * wall - own * own - 2 * own * rules.round_edge);
-    use.solid_mm3 += h * kPi * (end * end - start * start);
-    use.sparse_mm3 -= h * kPi * sparse * sparse;
-    use.full_mm3 -= h * kPi * end * end;
-    use.edge_mm3 += h * rules.spacing * 2 * kPi * sparse;
+    use.wall_mm3 += h * std::numbers::pi * (wall * wall - own * own - 2 * own * rules.round_edge);
+    use.solid_mm3 += h * std::numbers::pi * (end * end - start * start);
+    use.sparse_mm3 -= h * std::numbers::pi * sparse * sparse;
+    use.full_mm3 -= h * std::numbers::pi * end * end;
+    use.edge_mm3 += h * rules.spacing * 2 * std::numbers::pi * sparse;
   }
   return use;
 }
@@ -143,7 +141,7 @@ TimeChange time_change(const FilamentUse& whole, const FilamentUse& hollow, std:
     for (long k = -layers; k < layers; ++k) {
       const double z = (static_cast<double>(k) + 0.5) * settings.layer_height;
       const double radius = std::sqrt(std::max(0.0, sphere.radius * sphere.radius - z * z));
-      const double round = settings.perimeters * 2 * kPi * radius;
+      const double round = settings.perimeters * 2 * std::numbers::pi * radius;
       length += round;
       seconds += round / (radius < kSmallWallRadius ? kSmallVoidWallSpeed : kVoidWallSpeed);
       after += kSecondsPerContour;

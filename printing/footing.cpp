@@ -13,18 +13,16 @@ namespace {
 constexpr double kContactShare = 0.01;
 constexpr double kLeastContact = 0.1;
 
-using Point = Footprint::Point;
-
 // Twice the area of the triangle, positive counter-clockwise.
-double turn(Point a, Point b, Point c) {
+double turn(Footprint::Point a, Footprint::Point b, Footprint::Point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 // Counter-clockwise, without points along its edges (Andrew's monotone chain).
-std::vector<Point> convex_hull(std::vector<Point> points) {
+std::vector<Footprint::Point> convex_hull(std::vector<Footprint::Point> points) {
   std::sort(points.begin(), points.end(),
-            [](Point a, Point b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  std::vector<Point> hull;
+            [](Footprint::Point a, Footprint::Point b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::vector<Footprint::Point> hull;
   const auto add_chain = [&](auto first, auto last) {
     const std::size_t start = hull.size();
     for (; first != last; ++first) {
@@ -45,7 +43,7 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
 Footprint::Edge Footprint::nearest_edge(double x, double y) const {
   Edge nearest{.distance = std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const Point a = corners_[i], b = corners_[(i + 1) % corners_.size()];
+    const Footprint::Point a = corners_[i], b = corners_[(i + 1) % corners_.size()];
     const double side = std::hypot(b.x - a.x, b.y - a.y);
     const double distance = turn(a, b, {x, y}) / side;
     if (distance < nearest.distance) nearest = {i, -(b.y - a.y) / side, (b.x - a.x) / side, distance};
@@ -53,8 +51,8 @@ Footprint::Edge Footprint::nearest_edge(double x, double y) const {
   return nearest;
 }
 
-std::optional<Footprint> footprint_around(std::vector<Point> points) {
-  std::vector<Point> hull = convex_hull(std::move(points));
+std::optional<Footprint> footprint_around(std::vector<Footprint::Point> points) {
+  std::vector<Footprint::Point> hull = convex_hull(std::move(points));
   if (hull.size() < 3) return std::nullopt;
   return Footprint(std::move(hull));
 }
@@ -64,7 +62,7 @@ std::optional<Footprint> footprint_of(const Mesh& mesh) {
   const double ground = static_cast<double>(box.lower.z);
   const double contact_height =
       std::max(kLeastContact, kContactShare * (static_cast<double>(box.upper.z) - ground));
-  std::vector<Point> contact;
+  std::vector<Footprint::Point> contact;
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) {
       const Vec3d p = to_double(mesh.positions[vertex]);

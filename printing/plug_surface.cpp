@@ -115,8 +115,8 @@ class PlugBuilder {
     rim_.assign(sides_, shape_.radius);
     double highest = -std::numeric_limits<double>::infinity();
     std::vector<double> heights(sides_);
-    constexpr int kSteps = 8;  // each leaves a small share of the error: the side is steep
-    for (int step = 0; step < kSteps; ++step) {
+    constexpr int kNewtonSteps = 8;  // each leaves a small share of the error: the side is steep
+    for (int step = 0; step < kNewtonSteps; ++step) {
       for (std::size_t i = 0; i < sides_; ++i) {
         const auto height = shape_.height(rim_[i] * std::cos(angle(i)), rim_[i] * std::sin(angle(i)));
         if (!height) return false;

@@ -18,7 +18,7 @@ namespace aerate::batch {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 std::string number(const std::optional<double>& value) {
   return value ? fmt::format("{}", *value) : std::string();
@@ -189,36 +189,37 @@ std::string summary_csv(std::span<const BatchRow> rows) {
 
 std::string summary_json(std::span<const BatchRow> rows, const std::string& version) {
   const auto or_null = [](const std::optional<double>& value) {
-    return value ? Json(*value) : Json(nullptr);
+    return value ? OrderedJson(*value) : OrderedJson(nullptr);
   };
   const Counts counts = counts_of(rows);
-  Json totals{{"done", counts.done}, {"not_done", counts.not_done}, {"yet_to_do", counts.yet_to_do}};
+  OrderedJson totals{{"done", counts.done}, {"not_done", counts.not_done}, {"yet_to_do", counts.yet_to_do}};
   for (const FigureRow& row : kFigureRows)
     if (row.is_summed) totals[row.name] = or_null(total(rows, row.figure));
   totals["seconds"] = total_seconds(rows);
-  Json models = Json::array();
+  OrderedJson models = OrderedJson::array();
   for (const BatchRow& row : rows) {
     const PlannedJob& job = *row.job;
     const JobRecord& record = row.record;
-    Json model{{"n", job.number},
-               {"model", job.model.string()},
-               {"origin", job.origin.empty() ? Json(nullptr) : Json(job.origin)},
-               {"result", job.name.empty() ? Json(nullptr) : Json(job.name.string())},
-               {"outcome", name_of(record.outcome)},
-               {"exit_status", record.exit_code},
-               {"message", record.message.empty() ? Json(nullptr) : Json(record.message)}};
+    OrderedJson model{
+        {"n", job.number},
+        {"model", job.model.string()},
+        {"origin", job.origin.empty() ? OrderedJson(nullptr) : OrderedJson(job.origin)},
+        {"result", job.name.empty() ? OrderedJson(nullptr) : OrderedJson(job.name.string())},
+        {"outcome", name_of(record.outcome)},
+        {"exit_status", record.exit_code},
+        {"message", record.message.empty() ? OrderedJson(nullptr) : OrderedJson(record.message)}};
     for (const FigureRow& figure : kFigureRows) model[figure.name] = or_null(record.figures.*figure.figure);
     model["seconds"] = record.seconds;
     model["seconds_in_job"] = record.seconds_in_job;
     model["peak_memory_bytes"] = record.peak_memory_bytes;
     models.push_back(std::move(model));
   }
-  const Json json{{"schema", "aerate.batch"},
-                  {"schema_version", 1},
-                  {"program", version},
-                  {"totals", totals},
-                  {"models", models}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const OrderedJson json{{"schema", "aerate.batch"},
+                         {"schema_version", 1},
+                         {"program", version},
+                         {"totals", totals},
+                         {"models", models}};
+  return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::string summary_html(std::span<const BatchRow> rows, const fs::path& results,

@@ -24,7 +24,7 @@
 namespace aerate {
 namespace {
 
-constexpr std::size_t kTrianglesPerPiece = std::size_t{1} << 16;
+constexpr std::size_t kTrianglesAtATime = std::size_t{1} << 16;
 
 // What one void was found to be.
 struct MeasuredCell {
@@ -164,7 +164,7 @@ class CellChecker {
     const double looked_for = wall + expected_.tolerance;
     // Of each triangle as far as it is nearer than those before, whichever these are: the least of all is the same.
     std::atomic<double> nearest = looked_for;
-    for_each_polled(count, kTrianglesPerPiece, monitor_, [&](std::size_t i) {
+    for_each_polled(count, kTrianglesAtATime, monitor_, [&](std::size_t i) {
       double known = nearest.load(std::memory_order_relaxed);
       const double distance =
           distance_to_surface(facet_of(mesh_, mesh_.triangles[first + i]), expected_.surface.bvh(), known);

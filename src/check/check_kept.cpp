@@ -14,7 +14,7 @@
 namespace aerate {
 namespace {
 
-constexpr std::size_t kTrianglesPerPiece = std::size_t{1} << 14;
+constexpr std::size_t kPlacesPerPiece = std::size_t{1} << 14;
 
 // What is taken out keeps away from the surface of regions, so that few points tell for all that it is connected with.
 void require_outside(const Mesh& read_back, const Expected& expected) {
@@ -34,7 +34,7 @@ void require_outside(const Mesh& read_back, const Expected& expected) {
 double least_distance(const Mesh& read_back, const Expected& expected, double limit, Monitor& monitor) {
   const std::size_t first = expected.solid.outer_triangle_count();
   std::vector<double> distances(read_back.triangles.size() - first);
-  for_each_polled(distances.size(), kTrianglesPerPiece, monitor, [&](std::size_t i) {
+  for_each_polled(distances.size(), kPlacesPerPiece, monitor, [&](std::size_t i) {
     distances[i] = distance_to_surface(facet_of(read_back, read_back.triangles[first + i]),
                                        expected.kept->within.bvh(), limit);
   });

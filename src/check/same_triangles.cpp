@@ -10,7 +10,7 @@ namespace aerate {
 namespace {
 
 // Triangles that are compared between two questions to the monitor.
-constexpr std::size_t kTrianglesPerPiece = std::size_t{1} << 22;
+constexpr std::size_t kComparedPerPiece = std::size_t{1} << 22;
 
 // The first of the triangles `first`..`last`-1 that differs; `last` if none does.
 std::size_t difference_among(const Mesh& a, const Mesh& b, std::size_t first, std::size_t last) {
@@ -34,9 +34,9 @@ bool has_same_corners(const Mesh& a, std::size_t i, const Mesh& b, std::size_t j
 }
 
 std::size_t find_difference(const Mesh& a, const Mesh& b, std::size_t count, Monitor& monitor) {
-  for (std::size_t first = 0; first < count; first += kTrianglesPerPiece) {
+  for (std::size_t first = 0; first < count; first += kComparedPerPiece) {
     monitor.check_interrupted();
-    const std::size_t last = std::min(count, first + kTrianglesPerPiece);
+    const std::size_t last = std::min(count, first + kComparedPerPiece);
     const std::size_t different = difference_among(a, b, first, last);
     if (different != last) return different;
   }

@@ -13,7 +13,7 @@ constexpr std::size_t kMostShown = 70;  // characters of a description beside an
 constexpr const char* kMade = "made from the program's own options";
 
 // In single quotes, for bash and zsh.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + "'";
@@ -155,7 +155,7 @@ std::string zsh_option(const OptionWords& option) {
     spec += in_brackets(option.description);
     if (option.form.may_be_bare) spec += ":";
     if (!is_flag(option)) spec += fmt::format(":{}:{}", zsh_message(option.value), zsh_action(option));
-    lines += fmt::format(" \\\n        {}", quoted(spec));
+    lines += fmt::format(" \\\n        {}", in_quotes(spec));
   }
   return lines;
 }
@@ -163,7 +163,7 @@ std::string zsh_option(const OptionWords& option) {
 std::string zsh_argument(const OptionWords& argument) {
   const std::string spec =
       fmt::format("{}:{}:{}", argument.form.is_list ? "*" : "", argument.value, zsh_action(argument));
-  return fmt::format(" \\\n        {}", quoted(argument.form.is_list ? spec : "1" + spec));
+  return fmt::format(" \\\n        {}", in_quotes(argument.form.is_list ? spec : "1" + spec));
 }
 
 // ---- fish
@@ -263,7 +263,7 @@ std::string zsh_completion(const ProgramWords& words) {
   for (const CommandWords& command : words.commands)
     text +=
         fmt::format("        {}\n",
-                    quoted(fmt::format("{}:{}", command.name, in_short(command.description, kMostShown))));
+                    in_quotes(fmt::format("{}:{}", command.name, in_short(command.description, kMostShown))));
   text += "      )\n      _describe command commands ;;\n    after)\n      case $words[1] in\n";
   for (const CommandWords& command : words.commands) {
     text += fmt::format("        {})\n          _arguments", command.name);

@@ -14,7 +14,7 @@ const std::map<std::string, PrintForm> kForms{{"voids", PrintForm::voids},
                                               {"modifiers", PrintForm::modifiers},
                                               {"lightning-modifiers", PrintForm::lightning_modifiers}};
 
-CellWords words_of_cells() {
+CellWords words_of_print_cells() {
   return {
       .shape =
           "What voids and modifiers are: the packed spheres, or the cells round them (default cells for "
@@ -28,7 +28,7 @@ CellWords words_of_cells() {
 
 FormOptions::FormOptions(CLI::App& command, const ConfigFile& config,
                          const std::vector<std::string>& patterns)
-    : packing_(command, config), cells_(command, words_of_cells()), modifier_options_(config) {
+    : packing_(command, config), cells_(command, words_of_print_cells()), modifier_options_(config) {
   std::vector<std::string> forms{"auto"};
   for (const auto& [name, form] : kForms) forms.push_back(name);
   forms.insert(forms.end(), patterns.begin(), patterns.end());

@@ -70,7 +70,7 @@ double default_fillet(const HollowOptions& options) {
   return has_roofs ? options.drainage->channel_radius / 2 : options.drainage->channel_radius;
 }
 
-CellWords words_of_cells() {
+CellWords words_of_void_cells() {
   return {
       .shape =
           "What voids are: the packed spheres, or the cells round them, which meet in plane walls as "
@@ -90,7 +90,7 @@ struct HollowCommand {
         packing(command, config),
         keep_solid(command),
         drainage(command, config),
-        cells(command, words_of_cells()),
+        cells(command, words_of_void_cells()),
         print(command, config),
         views(command, "the result"),
         run_options(command),

@@ -23,7 +23,7 @@
 namespace aerate::cli {
 namespace {
 
-CellWords words_of_cells() {
+CellWords words_of_packed_cells() {
   return {
       .shape =
           "What is written: the packed spheres, or the cells round them, as 'aerate hollow --shape cells' "
@@ -49,7 +49,7 @@ struct PackCommand {
       : model(command),
         packing(command, config),
         keep_solid(command),
-        cells(command, words_of_cells()),
+        cells(command, words_of_packed_cells()),
         views(command, "what was packed in the model"),
         run_options(command) {
     command

@@ -20,7 +20,7 @@ namespace aerate::cli {
 namespace {
 
 // As the command line and its help name a slicer.
-std::vector<std::string> name_of(const SlicerProfile& slicer) {
+std::vector<std::string> names_of(const SlicerProfile& slicer) {
   return {slicer.name};
 }
 
@@ -61,7 +61,7 @@ struct SliceCommand {
     command.add_option("-o,--output", output, "The G-code")->required()->type_name("FILE");
     command.add_option("--slicer", slicer, listed(of_slicers(described), "or"))
         ->required()
-        ->check(CLI::IsMember(of_slicers(name_of)))
+        ->check(CLI::IsMember(of_slicers(names_of)))
         ->type_name("NAME");
     command.add_flag(
         "--supports", supports,

@@ -68,8 +68,6 @@ void add_within(const Corners& whole, const SurfaceIndex& model, double precisio
   }
 }
 
-constexpr std::size_t kBlocks = 256, kLinesPerBlock = 128;
-
 // How much of a line is in the first two bodies, and in none of the others.
 double common_length(std::span<const kernels::WindingView> bodies, double x, double y) {
   std::vector<std::pair<LineCrossing, std::size_t>> crossings;
@@ -114,6 +112,7 @@ double common_volume(const kernels::WindingView& body, const kernels::WindingVie
   const Vec3d lower = max_of(body.box.lower, model.box.lower);
   const Vec3d size = min_of(body.box.upper, model.box.upper) - lower;
   if (!(size.x > 0 && size.y > 0 && size.z > 0)) return 0;
+  constexpr std::size_t kBlocks = 256, kLinesPerBlock = 128;
   std::vector<double> sums(kBlocks, 0);
   tbb::parallel_for(std::size_t{0}, kBlocks, [&](std::size_t block) {
     for (std::size_t i = block * kLinesPerBlock; i < (block + 1) * kLinesPerBlock; ++i) {

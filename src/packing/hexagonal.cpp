@@ -99,7 +99,7 @@ double lattice_cells(Vec3d extent, double radius) {
          (extent.z / (kernels::HexagonalLattice::kLayer * radius) + 1);
 }
 
-MemoryNeed memory_for(const Mesh& mesh, const PackingLimits& limits, const PackingStop& /*stop*/) {
+MemoryNeed memory_for_lattice(const Mesh& mesh, const PackingLimits& limits, const PackingStop& /*stop*/) {
   const Box3f box = bounding_box(mesh);
   const Vec3d extent = to_double(box.upper) - to_double(box.lower);
   const double radius = limits.max_radius + limits.gap / 2;
@@ -132,7 +132,7 @@ PackingMethod hexagonal_method() {
       .name = "hexagonal",
       .summary = "a lattice",
       .on_lattice = true,
-      .memory = memory_for,
+      .memory = memory_for_lattice,
       .pack = [](const Mesh& mesh, const PackingLimits& limits, const PackingStop& /*stop*/, Monitor& monitor,
                  const DeviceRequest& device) { return pack_hexagonal(mesh, limits, monitor, device); }};
 }

@@ -215,12 +215,12 @@ double lowest_along(const Mesh& mesh, Vec3d up) {
 
 // How good a plan is, the less the better: the share of the voids' volume that is not made, and what its holes and what is sucked at are worth.
 double cost_of(const DrainedVoids& drained) {
-  constexpr double kWorthOfHole = 0.005;  // beyond the two of each network
+  constexpr double kWorthOfFurtherHole = 0.005;  // beyond the two of each network
   const double all = drained.plan.pools.total + drained.dropped.volume;
   const double needed = 2 * static_cast<double>(drained.plan.network_count);
   const double more = static_cast<double>(drained.plan.holes.size()) - needed;
   const double suction = std::max(0.0, 1 - drained.request.widest_cup / drained.plan.widest_cup);
-  return drained.dropped.volume / all + kWorthOfHole * more + kWorthOfSuction * suction +
+  return drained.dropped.volume / all + kWorthOfFurtherHole * more + kWorthOfSuction * suction +
          (drained.request.avoids_plate ? 0 : kWorthOfPlate);
 }
 

@@ -14,10 +14,6 @@
 namespace aerate {
 namespace {
 
-double in_percent(double share) {
-  return 100 * share;
-}
-
 // To a hundredth of a millimetre, so that the radius which is read is the one that is used.
 double rounded_up(double length) {
   return std::ceil(length * 100) / 100;

@@ -7,10 +7,6 @@
 namespace aerate {
 namespace {
 
-double in_percent(double share) {
-  return 100 * share;
-}
-
 // Without the sign of a zero.
 double rounded_percent(double share) {
   return std::round(in_percent(share)) + 0.0;

@@ -11,7 +11,7 @@
 namespace aerate {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoNumber = ~std::uint32_t{0};
 
 // How the walk goes on at a gate, an edge a -> b with a triangle behind it and perhaps one before it.
 enum Step : char {
@@ -74,7 +74,7 @@ class PartWalk {
     for (const Triangle& t : triangles) triangles_.push_back({own(t[0]), own(t[1]), own(t[2])});
     places_.reserve(used.size());
     for (const std::uint32_t vertex : used) places_.push_back(rounded(mesh.positions[vertex], grid));
-    met_as_.assign(used.size(), kNone);
+    met_as_.assign(used.size(), kNoNumber);
     is_done_.assign(triangles.size(), false);
     list_corners();
   }
@@ -83,7 +83,7 @@ class PartWalk {
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
       if (is_done_[t]) continue;
       start(t);
-      while (here_ != kNone) go_on();
+      while (here_ != kNoNumber) go_on();
     }
     out_.vertex_count = met_;
     return std::move(out_);
@@ -126,7 +126,8 @@ class PartWalk {
     is_done_[t] = true;
     char step = kStart;
     for (std::size_t i = 0; i < 3; ++i)
-      if (met_as_[corners[i]] != kNone && !is_repeated(corners, i)) step = static_cast<char>(step | 1 << i);
+      if (met_as_[corners[i]] != kNoNumber && !is_repeated(corners, i))
+        step = static_cast<char>(step | 1 << i);
     // A corner that is there twice is met by then.
     for (std::size_t i = 0; i < 3; ++i)
       if (is_repeated(corners, i)) step = static_cast<char>(step | 1 << i);
@@ -165,7 +166,7 @@ class PartWalk {
     }
     is_done_[*corner / 3] = true;
     const std::uint32_t tip = triangles_[*corner / 3][(*corner % 3 + 2) % 3];
-    if (met_as_[tip] == kNone) {
+    if (met_as_[tip] == kNoNumber) {
       out_.steps.push_back(kNew);
       put_place(tip, places_[gate.from] + places_[gate.to] - places_[gate.behind]);
       widen(here, tip);
@@ -204,7 +205,7 @@ class PartWalk {
   void remove(std::uint32_t gate) {
     gates_[gates_[gate].before].after = gates_[gate].after;
     gates_[gates_[gate].after].before = gates_[gate].before;
-    if (here_ == gate) here_ = gates_[gate].after == gate ? kNone : gates_[gate].after;
+    if (here_ == gate) here_ = gates_[gate].after == gate ? kNoNumber : gates_[gate].after;
   }
 
   bool is_back(std::uint32_t a, std::uint32_t b) const {
@@ -217,7 +218,7 @@ class PartWalk {
     while (true) {
       const std::uint32_t before = gates_[here_].before, after = gates_[here_].after;
       if (after == here_) return;
-      std::uint32_t other = kNone;
+      std::uint32_t other = kNoNumber;
       if (is_back(here_, after)) {
         other = after;
       } else if (is_back(here_, before)) {
@@ -228,11 +229,11 @@ class PartWalk {
       const std::uint32_t closed = here_;
       const std::uint32_t left = other == after ? before : gates_[other].before;
       remove(closed);
-      if (here_ == kNone) return;
+      if (here_ == kNoNumber) return;
       const bool is_last = gates_[other].after == other;
       remove(other);
       if (is_last) {
-        here_ = kNone;
+        here_ = kNoNumber;
         return;
       }
       here_ = left;
@@ -246,7 +247,7 @@ class PartWalk {
   std::vector<bool> is_done_;
   std::vector<std::uint32_t> first_corner_, corners_;  // of each vertex, 3 * triangle + corner
   std::vector<Gate> gates_;
-  std::uint32_t here_ = kNone;  // the gate to go on at
+  std::uint32_t here_ = kNoNumber;  // the gate to go on at
   Place last_{0, 0, 0};
   PageGeometry out_;
 };

@@ -18,7 +18,7 @@ constexpr double kOffGridX = 0.4142, kOffGridY = 0.3179;
 // Lower spans, and openings between surfaces that are as near as this, are rounding. Millimetres.
 constexpr double kLeastHeight = 1e-5;
 
-struct Crossing {
+struct AirCrossing {
   double height;
   int leaves;  // +1: out of the solid, going up; -1: into it
 };
@@ -236,17 +236,17 @@ void add_spans(AirColumns& columns, const kernels::WindingView& winding) {
 std::vector<AirSpan> air_spans_at(const kernels::WindingView& winding, double x, double y) {
   const Box3d& box = winding.box;
   if (x < box.lower.x || x > box.upper.x || y < box.lower.y || y > box.upper.y) return {AirSpan{}};
-  std::vector<Crossing> crossings;
+  std::vector<AirCrossing> crossings;
   winding.for_each_near(x, y, [&](std::uint32_t i) {
     const int sign = kernels::winding_detail::line_crossing(winding.facets[i], x, y);
     if (sign != 0) crossings.push_back({height_at(winding.facets[i], x, y), sign});
   });
   std::stable_sort(crossings.begin(), crossings.end(),
-                   [](const Crossing& a, const Crossing& b) { return a.height < b.height; });
+                   [](const AirCrossing& a, const AirCrossing& b) { return a.height < b.height; });
   std::vector<AirSpan> spans;
   int inside = 0;
   double floor = -kInfinity;
-  for (const Crossing& crossing : crossings) {
+  for (const AirCrossing& crossing : crossings) {
     const int next = inside - crossing.leaves;
     if (inside <= 0 && next > 0 && crossing.height > floor + kLeastHeight)
       spans.push_back({floor, crossing.height});
