@@ -36,8 +36,8 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
                             const Undersides& undersides, const SupportRules& rules,
                             const SupportShape& shape, bool has_voids, Monitor& monitor);
 
-// Of the bodies that stand on the plate, how far inside of its feet there and on the model each one's centre of mass is: the least, mm; nothing
-// if none stands there.
+// Of the bodies that stand on the plate, how far inside of its feet there and of what it stands on or leans on of the model each one's centre
+// of mass is: the least, mm; nothing if none stands there, and minus infinity if one stands on nothing at all.
 //   body: some triangles of the mesh, closed shells
 //   undersides: of the model
 std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body,
