@@ -76,6 +76,9 @@ SupportShape shape_for(const SupportOptions& options, const SupportRules& rules,
   shape.body.stands_alone = shape.tooth.gap > 0;
   // So that the body keeps its clearance below what it holds.
   shape.body.tooth_height = shape.body.clearance + 0.4;
+  // What is too low for a body is left to teeth alone.
+  shape.tooth.most_alone = std::max(
+      shape.tooth.most_alone, shape.body.tooth_height + shape.body.clearance + shape.tooth.embedded + 2);
   return shape;
 }
 

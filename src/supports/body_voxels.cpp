@@ -308,7 +308,20 @@ Voxels without_hanging(const Voxels& voxels, const Undersides& columns, const Bo
   return kept;
 }
 
-// Columns of bodies that stand on the plate and whose centre of mass is not above their feet there and on the model; none if all stand.
+// Whether a tooth has room below a body that is so near above the model: not on slopes that it would stand beside.
+bool has_footing(const Undersides& columns, std::size_t column, double z, double clearance) {
+  constexpr double kSteep = 1.6;  // as kMostBeside of teeth
+  if (!stands_on_model(columns, column, z, clearance)) return false;
+  const double lowest = columns.height_above_model(column, z) + kSteep * columns.spacing;
+  return std::ranges::none_of(
+      std::array{column - 1, column + 1, column - columns.count_x, column + columns.count_x},
+      [&](std::size_t other) {
+        return !columns.is_solid(other, z) && columns.height_above_model(other, z) > lowest;
+      });
+}
+
+// Columns of bodies that do not stand: they have no feet, or stand on the plate with their centre of mass not above their feet there and on
+// the model. None if all stand.
 std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides& columns, double clearance) {
   constexpr std::uint32_t kNone = 0xffffffff;
   constexpr double kLeastMargin = 0.5;  // pixels, since voxels are smoothed
@@ -334,7 +347,7 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
   }
   struct Body {
     double x = 0, y = 0, count = 0;  // sums
-    bool is_on_plate = false;
+    bool is_on_plate = false, has_footing = false;
     std::vector<Footprint::Point> feet;
   };
   std::map<std::uint32_t, Body> bodies;
@@ -347,6 +360,7 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
     const bool is_on_plate = voxels[i][2] == 0;
     body.is_on_plate = body.is_on_plate || is_on_plate;
     const double z = columns.plate + (voxels[i][2] + 0.5) * columns.spacing;
+    body.has_footing = body.has_footing || is_on_plate || has_footing(columns, column_of(i), z, clearance);
     if (!is_on_plate && !stands_on_model(columns, column_of(i), z, clearance)) continue;
     for (const auto& [dx, dy] :
          {std::pair(-0.5, -0.5), std::pair(0.5, -0.5), std::pair(-0.5, 0.5), std::pair(0.5, 0.5)})
@@ -354,6 +368,7 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
   }
   std::set<std::uint32_t> tipping;
   for (auto& [root, body] : bodies) {
+    if (!body.has_footing) tipping.insert(root);
     if (!body.is_on_plate) continue;
     const std::optional<Footprint> foot = footprint_around(std::move(body.feet));
     if (foot && foot->margin(body.x / body.count, body.y / body.count) < kLeastMargin) tipping.insert(root);
@@ -416,10 +431,16 @@ std::vector<std::array<int, 3>> body_voxels(const Undersides& columns, const Sur
   for (int tries = 1;; ++tries) {
     Voxels voxels = grown_body(columns, begins, shape, wider, monitor);
     keep_clear_of_surface(voxels, columns, model, shape.clearance);
-    voxels = without_hanging(voxels, columns, shape, reach);
-    if (!shape.stands_alone || tries == kTries) return voxels;
-    const std::vector<std::size_t> tipping = tipping_columns(voxels, columns, shape.clearance);
-    if (tipping.empty()) return voxels;
+    if (voxels.empty()) return voxels;
+    Voxels kept = without_hanging(voxels, columns, shape, reach);
+    if (!shape.stands_alone || tries == kTries) return kept;
+    if (kept.empty()) {
+      // All of it ends above slopes on which it cannot stand.
+      std::ranges::fill(wider, tries * Thickness::kMore);
+      continue;
+    }
+    const std::vector<std::size_t> tipping = tipping_columns(kept, columns, shape.clearance);
+    if (tipping.empty()) return kept;
     for (const std::size_t column : tipping) wider[column] = tries * Thickness::kMore;
   }
 }

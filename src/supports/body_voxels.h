@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "core/monitor.h"
@@ -21,7 +22,7 @@ struct CarriedPlace {
 bool stands_on_model(const Undersides& columns, std::size_t column, double z, double clearance);
 
 // Supports without their teeth as voxels: coordinates in columns, and in layers as high as a column is wide, from the plate up; the
-// lowest layer first. What would tip over is drawn in less, body by body.
+// lowest layer first. What would tip over, or end above a slope on which it cannot stand, is drawn in less, body by body.
 //   model: that `columns` are of
 //   reach: how far beside what is held something may be, mm
 std::vector<std::array<int, 3>> body_voxels(const Undersides& columns, const SurfaceIndex& model,

@@ -8,6 +8,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
+#include <utility>
 #include <vector>
 
 #include "check/check_failure.h"
@@ -18,6 +19,7 @@
 #include "mesh/topology.h"
 #include "printing/footing.h"
 #include "supports/body_voxels.h"
+#include "supports/pixels.h"
 
 namespace aerate {
 namespace {
@@ -28,6 +30,14 @@ constexpr double kColumnsOff = 1.5;
 constexpr double kMostOwn = 5;
 // Of coordinates in a file, mm.
 constexpr double kRounding = 1e-3;
+
+// For some models nothing can be made that stands.
+template <typename... Arguments>
+[[noreturn]] void fail_to_stand(fmt::format_string<Arguments...> why, Arguments&&... arguments) {
+  throw MeshError(
+      "no supports were found that stand: " + fmt::format(why, std::forward<Arguments>(arguments)...),
+      "print it another way --up, give a larger --stem, or let the slicer make supports there");
+}
 
 double least_distance(const Mesh& mesh, std::size_t first, std::size_t end, const SurfaceIndex& model,
                       double limit) {
@@ -91,6 +101,33 @@ bool is_touched(const kernels::WindingView& model, double x, double y, double z,
   return false;
 }
 
+// Where the model keeps a body from tipping over: it stands there, or leans on a slope of the model that is too steep for teeth.
+class HeldByModel {
+ public:
+  HeldByModel(const Undersides& columns, double clearance)
+      : columns_(columns),
+        clearance_(clearance),
+        // Voxels are cut by the clearance, and smoothed.
+        beside_(disc_of(clearance / columns.spacing + 1.5)) {}
+
+  bool operator()(Vec3d at) const {
+    const auto column = columns_.column_at(at.x, at.y);
+    if (!column) return false;
+    if (stands_on_model(columns_, *column, at.z, clearance_)) return true;
+    if (!std::isfinite(columns_.height_above_model(*column, at.z))) return false;
+    return std::ranges::any_of(beside_, [&](std::pair<int, int> step) {
+      const auto other =
+          columns_.column_at(at.x + step.first * columns_.spacing, at.y + step.second * columns_.spacing);
+      return other && columns_.is_solid(*other, at.z);
+    });
+  }
+
+ private:
+  const Undersides& columns_;
+  double clearance_;
+  std::vector<std::pair<int, int>> beside_;
+};
+
 }  // namespace
 
 std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body,
@@ -102,16 +139,24 @@ std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Tri
   std::vector<std::vector<Triangle>> shells(labels.count);
   for (std::size_t i = 0; i < alone.triangles.size(); ++i)
     shells[labels.of_triangle[i]].push_back(alone.triangles[i]);
+  const HeldByModel held(columns, clearance);
   std::optional<double> least;
   for (const std::vector<Triangle>& triangles : shells) {
     const Mesh shell = submesh(alone, triangles);
-    if (static_cast<double>(bounding_box(shell).lower.z) > columns.plate + 0.01) continue;
+    const bool is_on_plate = static_cast<double>(bounding_box(shell).lower.z) <= columns.plate + 0.01;
+    const auto stands = [&](const Vec3f& p) {
+      const Vec3d at = to_double(p);
+      const auto column = columns.column_at(at.x, at.y);
+      return column && stands_on_model(columns, *column, at.z, clearance);
+    };
+    if (!is_on_plate) {
+      if (std::ranges::none_of(shell.positions, stands)) least = -kInfinity;
+      continue;
+    }
     std::vector<Footprint::Point> feet;
     for (const Vec3f& p : shell.positions) {
       const Vec3d at = to_double(p);
-      const auto column = columns.column_at(at.x, at.y);
-      if (at.z <= columns.plate + kOnPlate || (column && stands_on_model(columns, *column, at.z, clearance)))
-        feet.push_back({at.x, at.y});
+      if (at.z <= columns.plate + kOnPlate || held(at)) feet.push_back({at.x, at.y});
     }
     const VolumeMoments moments = volume_moments(shell);
     const Vec3d centre = moments.first_moment * (1 / moments.volume);
@@ -200,9 +245,10 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
                  shape.body.clearance);
     facts.footing_margin = least_footing_margin(written, body, columns, shape.body.clearance);
     // What is joined to the model and to the plate cannot tip.
-    if (shape.tooth.gap > 0 && facts.footing_margin && *facts.footing_margin < 0)
-      fail_check("a body tips over: its centre of mass is {:.2f} mm outside of its foot",
-                 -*facts.footing_margin);
+    if (shape.tooth.gap > 0 && facts.footing_margin && *facts.footing_margin < 0 &&
+        std::isfinite(*facts.footing_margin))
+      fail_to_stand("a body tips over: its centre of mass is {:.2f} mm outside of its foot",
+                    -*facts.footing_margin);
   }
   monitor.check_interrupted();
   if (shape.tooth.gap > 0) {
@@ -226,9 +272,11 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
   facts.own_unsupported_area = of_own.unsupported_area;
   if (of_own.unsupported_area > kMostOwn) {
     const Vec3d at = *of_own.farthest_place;
-    fail_check("{:.1f} mm2 of its own underside are held by nothing, near ({:.2f}, {:.2f}, {:.2f}) mm",
-               of_own.unsupported_area, at.x, at.y, at.z);
+    fail_to_stand("{:.1f} mm2 of their own underside are held by nothing, near ({:.2f}, {:.2f}, {:.2f}) mm",
+                  of_own.unsupported_area, at.x, at.y, at.z);
   }
+  if (shape.tooth.gap > 0 && facts.footing_margin == -kInfinity)
+    fail_to_stand("a body has nothing to stand on: it ends above the model, which is too steep there");
   return facts;
 }
 

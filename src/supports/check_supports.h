@@ -30,14 +30,14 @@ struct SupportFacts {
 
 //   written: the supports, upright, of whose triangles the first `body_triangles` are the body, which has voids or none
 // Throws FailureError for what is not as it has to be: open or turned surfaces, a body in the model or nearer to it than
-// its clearance but for kClearanceTolerance, teeth in the model where a gap was asked for, bodies with a gap above that tip over. What is farther from a
+// its clearance but for kClearanceTolerance, teeth in the model where a gap was asked for; MeshError for bodies with a gap above that do not stand, and for what hangs below them. What is farther from a
 // tooth than the reach is told, and no fault.
 SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, const SurfaceIndex& model,
                             const Undersides& undersides, const SupportRules& rules,
                             const SupportShape& shape, bool has_voids, Monitor& monitor);
 
-// Of the bodies that stand on the plate, how far inside of its feet there and on the model each one's centre of mass is: the least, mm; nothing
-// if none stands there.
+// Of the bodies that stand on the plate, how far inside of its feet there and of what it stands on or leans on of the model each one's centre
+// of mass is: the least, mm; nothing if none stands there, and minus infinity if one stands on nothing at all.
 //   body: some triangles of the mesh, closed shells
 //   undersides: of the model
 std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body,

@@ -47,7 +47,8 @@ Supports make_supports(const SurfaceIndex& model, const Undersides& columns, con
   // The body's own underside is held where it leans by no more than the angle, and by teeth on the model else.
   const Undersides below =
       find_undersides(supports.body, body->view(), rules, columns.plate, columns.spacing);
-  const ToothSurfaces feet = teeth_on_model(model, below, plan_teeth(below, rules, shape.kind), shape.tooth);
+  const ToothSurfaces feet =
+      teeth_on_model(model, body->view(), below, plan_teeth(below, rules, shape.kind), shape.tooth);
   supports.foot_count = feet.count;
   supports.teeth = joined(supports.teeth, feet.mesh);
   return supports;

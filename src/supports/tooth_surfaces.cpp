@@ -99,18 +99,30 @@ class BelowModel {
 
 class OnModel {
  public:
-  OnModel(const kernels::WindingView& model, double plate, const ToothShape& shape)
-      : model_(model), plate_(plate), shape_(shape) {}
+  OnModel(const kernels::WindingView& model, const kernels::WindingView& body, double plate,
+          const ToothShape& shape)
+      : model_(model), body_(body), plate_(plate), shape_(shape) {}
 
   Extent extent(double x, double y, double ceiling, double /*nearest*/) const {
     double floor = -kInfinity;
     for (const AirSpan& span : air_spans_at(model_, x, y))
       if (span.floor < ceiling) floor = std::max(floor, span.floor);
-    return {std::max(plate_, floor + shape_.off()), ceiling + shape_.embedded};
+    const double ground = std::max(plate_, floor + shape_.off());
+    // The body may go on below.
+    double top = ground, lower = ground;
+    const std::vector<AirSpan> spans = air_spans_at(body_, x, y);
+    for (std::size_t i = 1; i < spans.size(); ++i) {
+      const double bottom = spans[i - 1].ceiling, end = spans[i].floor;
+      if (end <= top || end > ceiling - shape_.least_height) continue;
+      top = end;
+      lower = std::max({ground, end - shape_.embedded, 0.5 * (bottom + end)});
+    }
+    return {lower, ceiling + shape_.embedded};
   }
 
  private:
   const kernels::WindingView& model_;
+  const kernels::WindingView& body_;
   double plate_;
   const ToothShape& shape_;
 };
@@ -176,6 +188,12 @@ bool is_high_enough(const Extent& z, double plate, const ToothShape& shape) {
   return z.upper - z.lower >= (is_on_plate ? kLeastShareOnPlate : 1) * shape.least_height;
 }
 
+// A tooth that nothing joins to what it touches would fall over.
+bool is_needle(double length, double height, const ToothShape& shape) {
+  constexpr double kSlender = 6;
+  return shape.gap > 0 && height > shape.most_alone && height > kSlender * length;
+}
+
 // Which way a ridge goes at each of its points, a unit vector, and how much wider its cuts are there than it is.
 struct RidgeWay {
   double x = 1, y = 0;
@@ -230,7 +248,12 @@ void add_run(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersides& 
   const auto finish = [&](std::size_t end_at) {
     if (cuts.empty()) return;
     if (const auto end = flanks(end_at, 1); end && goes_on(cuts.back(), *end)) cuts.push_back(*end);
-    if (cuts.size() > 1) {
+    double length = 0, height = 0;
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      for (const Flank& flank : cuts[i]) height = std::max(height, flank.z.upper - flank.z.lower);
+      if (i > 0) length += std::hypot(cuts[i][0].x - cuts[i - 1][0].x, cuts[i][0].y - cuts[i - 1][0].y);
+    }
+    if (cuts.size() > 1 && !is_needle(length, height, shape)) {
       add_ridge(teeth.mesh, cuts);
       for (std::size_t i = 1; i < cuts.size(); ++i)
         teeth.tip_area += shape.width *
@@ -319,6 +342,7 @@ bool add_cone_at(ToothSurfaces& teeth, const SurfaceIndex& model, const Undersid
   // A foot beside what it would stand on.
   if (shape.gap > 0 && !tip_is_above && z.lower - foot > kMostBeside * shape.gap) return false;
   if (!is_high_enough(z, columns.plate, shape)) return false;
+  if (is_needle(2 * radius, z.upper - z.lower, shape)) return false;
   if (shape.gap > 0 && tip_is_above && at.z - z.upper > kMostGap * shape.gap) return false;
   const double base = std::min(radius + kConeSlope * (z.upper - z.lower), widths.widest_base * radius);
   const Vec3d upper{at.x, at.y, z.upper}, lower{at.x, at.y, z.lower};
@@ -410,9 +434,9 @@ ToothSurfaces teeth_below(const SurfaceIndex& model, const kernels::WindingView*
   return teeth_of(model, columns, plan, BelowModel(model.winding(), body, columns.plate, shape), shape, true);
 }
 
-ToothSurfaces teeth_on_model(const SurfaceIndex& model, const Undersides& columns, const TeethPlan& plan,
-                             const ToothShape& shape) {
-  return teeth_of(model, columns, plan, OnModel(model.winding(), columns.plate, shape), shape, false);
+ToothSurfaces teeth_on_model(const SurfaceIndex& model, const kernels::WindingView& body,
+                             const Undersides& columns, const TeethPlan& plan, const ToothShape& shape) {
+  return teeth_of(model, columns, plan, OnModel(model.winding(), body, columns.plate, shape), shape, false);
 }
 
 }  // namespace aerate

@@ -17,7 +17,8 @@ struct ToothShape {
   double penetration = 0.1;  // where nothing is left free: by how much a tip is within what it holds, mm
   double embedded = 0.9;     // how deep a tooth goes into the body, mm
   double least_height =
-      0.1;  // a lower tooth is none, mm; on the plate, where layers begin, 0.6 of that will do
+      0.1;                // a lower tooth is none, mm; on the plate, where layers begin, 0.6 of that will do
+  double most_alone = 8;  // with what is in the body, mm: a higher one stands if it is a sixth as long
 
   // No part of a tooth is nearer to the model, mm; across a slope the gap is narrower than along up.
   double least_distance() const { return 0.4 * gap; }
@@ -38,8 +39,8 @@ struct ToothSurfaces {
 ToothSurfaces teeth_below(const SurfaceIndex& model, const kernels::WindingView* body,
                           const Undersides& undersides, const TeethPlan& plan, const ToothShape& shape);
 
-// On the model, under a body whose `undersides` are not held otherwise.
-ToothSurfaces teeth_on_model(const SurfaceIndex& model, const Undersides& undersides, const TeethPlan& plan,
-                             const ToothShape& shape);
+// On the model, or on the body where it goes on below, under a body whose `undersides` are not held otherwise.
+ToothSurfaces teeth_on_model(const SurfaceIndex& model, const kernels::WindingView& body,
+                             const Undersides& undersides, const TeethPlan& plan, const ToothShape& shape);
 
 }  // namespace aerate

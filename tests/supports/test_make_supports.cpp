@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/facet_distance.h"
@@ -11,6 +12,7 @@
 #include "core/surface_index.h"
 #include "files/load.h"
 #include "mesh/inspect.h"
+#include "mesh/topology.h"
 #include "supports/check_supports.h"
 #include "supports/make_supports.h"
 #include "tests/support/caught.h"
@@ -100,6 +102,56 @@ TEST(MakeSupports, OnlyBodiesThatTipAreDrawnInLess) {
   const double leaning = body_volume(leaning_table()), other = body_volume(tee());
   EXPECT_GT(leaning, 10000);  // drawn in as others are it would fall over
   EXPECT_NEAR(body_volume(join(leaning_table(), beside(tee(), 60))), leaning + other, 0.05 * other);
+}
+
+// A wall that leans out by so many degrees below a table, whose edge is a little beyond the wall's foot: what goes straight down from it has little room there.
+Mesh table_above_steep_wall(double degrees, float beyond) {
+  const double height = 30 * std::tan(degrees * std::numbers::pi / 180);
+  Mesh leg = make_box({-10, 0, 0}, {30, 15, static_cast<float>(height)});
+  for (Vec3f& p : leg.positions)
+    if (p.x > 0 && p.z > 0) p.x = 0;
+  return join(
+      leg, make_box({-10, 0, static_cast<float>(height)}, {30 + beyond, 15, static_cast<float>(height) + 4}));
+}
+
+TEST(MakeSupports, NoBodyEndsAboveASteepSlope) {
+  for (const float beyond : {1.0F, 8.0F}) {
+    Supported made(table_above_steep_wall(75, beyond));
+    made.make();
+    EXPECT_NEAR(static_cast<double>(bounding_box(made.supports.body).lower.z), 0, 1e-4) << beyond;
+    const SupportFacts facts = made.check(made.mesh());
+    EXPECT_EQ(facts.unsupported_area, 0) << beyond;
+    EXPECT_GT(facts.footing_margin.value_or(-1), 0) << beyond;
+  }
+}
+
+// The highest of separate pieces of a mesh, mm, that are more than six times as high as they are long; their vertices are apart.
+double highest_needle(const Mesh& mesh) {
+  const EdgeUses uses(mesh);
+  const ShellLabels labels = label_shells(mesh, uses);
+  std::vector<std::vector<Triangle>> pieces(labels.count);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    pieces[labels.of_triangle[i]].push_back(mesh.triangles[i]);
+  double highest = 0;
+  for (const std::vector<Triangle>& piece : pieces) {
+    const Box3f box = bounding_box(submesh(mesh, piece));
+    const Vec3d size = to_double(box.upper) - to_double(box.lower);
+    if (size.z > 6 * std::hypot(size.x, size.y)) highest = std::max(highest, size.z);
+  }
+  return highest;
+}
+
+TEST(MakeSupports, NoToothIsANeedle) {
+  // Pegs one above the other, whose bodies leave edges beside the pegs below.
+  Mesh mesh = make_box({0, 0, 0}, {20, 20, 60});
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 5; ++j)
+      mesh = join(mesh, make_box({19.9F, 4 * j + 1.0F, 5 + 6.0F * i},
+                                 {24 + (i + j) % 3 * 3.0F, 4 * j + 3.0F, 6.5F + 6 * i}));
+  Supported made(mesh);
+  made.make();
+  made.check(made.mesh());
+  EXPECT_LE(highest_needle(made.supports.teeth), made.shape.tooth.most_alone);
 }
 
 TEST(MakeSupports, ABodyIsAsWideAsItsOwnHeightNeeds) {
@@ -264,7 +316,7 @@ class CheckSupports : public testing::Test {
   CheckSupports() { made.make(); }
 
   std::string refusal(const Mesh& written) {
-    return message_of<FailureError>([&] { static_cast<void>(made.check(written)); });
+    return message_of<Error>([&] { static_cast<void>(made.check(written)); });
   }
 
   Supported made{tee()};
@@ -320,6 +372,12 @@ TEST_F(CheckSupports, RefuseABodyThatHangs) {
   for (Vec3f& p : hanging.positions) p.z = std::max(p.z, 20.0F);  // its lower half is gone
   made.supports.body.positions.clear();
   EXPECT_TRUE(contains(refusal(hanging), "held by nothing"));
+}
+
+TEST_F(CheckSupports, RefuseABodyThatStandsOnNothing) {
+  // A block in the air: its underside is held by nothing, and so small that this alone would pass.
+  made.supports.body = make_box({2, 2, 10}, {4, 4, 12});
+  EXPECT_TRUE(contains(refusal(made.supports.body), "nothing to stand on"));
 }
 
 TEST_F(CheckSupports, RefuseABodyThatTipsOver) {
