@@ -16,9 +16,6 @@
 namespace aerate {
 namespace {
 
-// Smaller pieces are crumbs, mm3.
-constexpr double kCrumb = 2;
-
 // Moves vertices away from the model until no triangle is nearer to it than `least`, as far as that can be done; what stands on the plate
 // stays on it.
 void move_clear(Mesh& mesh, const SurfaceIndex& model, double plate, double least) {

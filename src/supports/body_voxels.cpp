@@ -328,6 +328,15 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
   const auto column_of = [&](std::size_t i) {
     return columns.column(static_cast<std::uint32_t>(voxels[i][0]), static_cast<std::uint32_t>(voxels[i][1]));
   };
+  // What is a single voxel wide is lost when voxels are smoothed.
+  const auto is_wide = [&](const std::vector<std::uint32_t>& layer, std::size_t column) {
+    return std::ranges::any_of(
+        std::array{column, column - 1, column - columns.count_x, column - columns.count_x - 1},
+        [&](std::size_t corner) {
+          return layer[corner] != kNone && layer[corner + 1] != kNone &&
+                 layer[corner + columns.count_x] != kNone && layer[corner + columns.count_x + 1] != kNone;
+        });
+  };
   DisjointSets sets(voxels.size());
   std::vector<std::uint32_t> below(static_cast<std::size_t>(columns.count_x) * columns.count_y, kNone),
       here = below;
@@ -339,8 +348,12 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
       for (const std::size_t other :
            {column - 1, column - columns.count_x - 1, column - columns.count_x, column - columns.count_x + 1})
         if (here[other] != kNone) sets.join(static_cast<std::uint32_t>(end), here[other]);
-      const bool is_next = begin > 0 && voxels[before][2] + 1 == voxels[begin][2];
-      if (is_next && below[column] != kNone) sets.join(static_cast<std::uint32_t>(end), below[column]);
+    }
+    const bool is_next = begin > 0 && voxels[before][2] + 1 == voxels[begin][2];
+    for (std::size_t i = begin; i < end && is_next; ++i) {
+      const std::size_t column = column_of(i);
+      if (below[column] != kNone && is_wide(here, column) && is_wide(below, column))
+        sets.join(static_cast<std::uint32_t>(i), below[column]);
     }
     for (std::size_t i = before; i < begin; ++i) below[column_of(i)] = kNone;
     std::swap(below, here);
@@ -368,6 +381,7 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
   }
   std::set<std::uint32_t> tipping;
   for (auto& [root, body] : bodies) {
+    if (body.count * std::pow(columns.spacing, 3) <= kCrumb) continue;
     if (!body.has_footing) tipping.insert(root);
     if (!body.is_on_plate) continue;
     const std::optional<Footprint> foot = footprint_around(std::move(body.feet));

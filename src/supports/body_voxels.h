@@ -11,6 +11,9 @@
 
 namespace aerate {
 
+// Smaller pieces are crumbs, mm3.
+inline constexpr double kCrumb = 2;
+
 // Where something is carried, mm: from its ceiling to what is below.
 struct CarriedPlace {
   double x, y;

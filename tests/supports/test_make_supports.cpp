@@ -115,7 +115,7 @@ Mesh table_above_steep_wall(double degrees, float beyond) {
 }
 
 TEST(MakeSupports, NoBodyEndsAboveASteepSlope) {
-  for (const float beyond : {1.0F, 8.0F}) {
+  for (const float beyond : {1.0F, 3.0F, 8.0F}) {
     Supported made(table_above_steep_wall(75, beyond));
     made.make();
     EXPECT_NEAR(static_cast<double>(bounding_box(made.supports.body).lower.z), 0, 1e-4) << beyond;
