@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <set>
 #include <tbb/parallel_for.h>
+#include <tuple>
 #include <utility>
 
 #include "core/disjoint_sets.h"
@@ -320,14 +322,13 @@ bool has_footing(const Undersides& columns, std::size_t column, double z, double
       });
 }
 
-// Columns of bodies that do not stand: they have no feet, or stand on the plate with their centre of mass not above their feet there and on
-// the model. None if all stand.
-std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides& columns, double clearance) {
+std::size_t column_of(const Undersides& columns, const std::array<int, 3>& voxel) {
+  return columns.column(static_cast<std::uint32_t>(voxel[0]), static_cast<std::uint32_t>(voxel[1]));
+}
+
+// Voxels that hang together, of layers from the lowest up or from the highest down.
+DisjointSets bodies_of(const Voxels& voxels, const Undersides& columns) {
   constexpr std::uint32_t kNone = 0xffffffff;
-  constexpr double kLeastMargin = 0.5;  // pixels, since voxels are smoothed
-  const auto column_of = [&](std::size_t i) {
-    return columns.column(static_cast<std::uint32_t>(voxels[i][0]), static_cast<std::uint32_t>(voxels[i][1]));
-  };
   // What is a single voxel wide is lost when voxels are smoothed.
   const auto is_wide = [&](const std::vector<std::uint32_t>& layer, std::size_t column) {
     return std::ranges::any_of(
@@ -338,26 +339,71 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
         });
   };
   DisjointSets sets(voxels.size());
-  std::vector<std::uint32_t> below(static_cast<std::size_t>(columns.count_x) * columns.count_y, kNone),
-      here = below;
+  std::vector<std::uint32_t> last(static_cast<std::size_t>(columns.count_x) * columns.count_y, kNone),
+      here = last;
   for (std::size_t begin = 0, end = 0, before = 0; begin < voxels.size(); before = begin, begin = end) {
     for (end = begin; end < voxels.size() && voxels[end][2] == voxels[begin][2]; ++end) {
-      const std::size_t column = column_of(end);
+      const std::size_t column = column_of(columns, voxels[end]);
       here[column] = static_cast<std::uint32_t>(end);
       // Neighbours that came before it, all around since there is air at the grid's sides.
       for (const std::size_t other :
            {column - 1, column - columns.count_x - 1, column - columns.count_x, column - columns.count_x + 1})
         if (here[other] != kNone) sets.join(static_cast<std::uint32_t>(end), here[other]);
     }
-    const bool is_next = begin > 0 && voxels[before][2] + 1 == voxels[begin][2];
+    const bool is_next = begin > 0 && std::abs(voxels[before][2] - voxels[begin][2]) == 1;
     for (std::size_t i = begin; i < end && is_next; ++i) {
-      const std::size_t column = column_of(i);
-      if (below[column] != kNone && is_wide(here, column) && is_wide(below, column))
-        sets.join(static_cast<std::uint32_t>(i), below[column]);
+      const std::size_t column = column_of(columns, voxels[i]);
+      if (last[column] != kNone && is_wide(here, column) && is_wide(last, column))
+        sets.join(static_cast<std::uint32_t>(i), last[column]);
     }
-    for (std::size_t i = before; i < begin; ++i) below[column_of(i)] = kNone;
-    std::swap(below, here);
+    for (std::size_t i = before; i < begin; ++i) last[column_of(columns, voxels[i])] = kNone;
+    std::swap(last, here);
   }
+  return sets;
+}
+
+bool is_crumb(double voxel_count, const Undersides& columns) {
+  return voxel_count * std::pow(columns.spacing, 3) <= kCrumb;
+}
+
+// Columns of the voxels of some bodies.
+std::vector<std::size_t> columns_of_bodies(const Voxels& voxels, const Undersides& columns,
+                                           DisjointSets& sets, const std::set<std::uint32_t>& bodies) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (bodies.contains(sets.root(static_cast<std::uint32_t>(i))))
+      found.push_back(column_of(columns, voxels[i]));
+  return found;
+}
+
+// Columns of bodies of which nothing is kept.
+//   voxels: from the highest layer down; kept: some of them, from the lowest up
+std::vector<std::size_t> lost_columns(const Voxels& voxels, const Voxels& kept, const Undersides& columns) {
+  const auto is_lower = [](const std::array<int, 3>& a, const std::array<int, 3>& b) {
+    return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]);
+  };
+  if (kept.size() == voxels.size()) return {};
+  DisjointSets sets = bodies_of(voxels, columns);
+  struct Count {
+    std::size_t all = 0, kept = 0;
+  };
+  std::map<std::uint32_t, Count> counts;
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    Count& count = counts[sets.root(static_cast<std::uint32_t>(i))];
+    ++count.all;
+    if (std::ranges::binary_search(kept, voxels[i], is_lower)) ++count.kept;
+  }
+  std::set<std::uint32_t> lost;
+  for (const auto& [root, count] : counts)
+    if (count.kept == 0 && !is_crumb(static_cast<double>(count.all), columns)) lost.insert(root);
+  return columns_of_bodies(voxels, columns, sets, lost);
+}
+
+// Columns of bodies that do not stand: they have no feet, or stand on the plate with their centre of mass not above their feet there and on
+// the model. None if all stand.
+std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides& columns, double clearance) {
+  constexpr double kLeastMargin = 0.5;  // pixels, since voxels are smoothed
+  DisjointSets sets = bodies_of(voxels, columns);
   struct Body {
     double x = 0, y = 0, count = 0;  // sums
     bool is_on_plate = false, has_footing = false;
@@ -373,24 +419,22 @@ std::vector<std::size_t> tipping_columns(const Voxels& voxels, const Undersides&
     const bool is_on_plate = voxels[i][2] == 0;
     body.is_on_plate = body.is_on_plate || is_on_plate;
     const double z = columns.plate + (voxels[i][2] + 0.5) * columns.spacing;
-    body.has_footing = body.has_footing || is_on_plate || has_footing(columns, column_of(i), z, clearance);
-    if (!is_on_plate && !stands_on_model(columns, column_of(i), z, clearance)) continue;
+    body.has_footing =
+        body.has_footing || is_on_plate || has_footing(columns, column_of(columns, voxels[i]), z, clearance);
+    if (!is_on_plate && !stands_on_model(columns, column_of(columns, voxels[i]), z, clearance)) continue;
     for (const auto& [dx, dy] :
          {std::pair(-0.5, -0.5), std::pair(0.5, -0.5), std::pair(-0.5, 0.5), std::pair(0.5, 0.5)})
       body.feet.push_back({x + dx, y + dy});
   }
   std::set<std::uint32_t> tipping;
   for (auto& [root, body] : bodies) {
-    if (body.count * std::pow(columns.spacing, 3) <= kCrumb) continue;
+    if (is_crumb(body.count, columns)) continue;
     if (!body.has_footing) tipping.insert(root);
     if (!body.is_on_plate) continue;
     const std::optional<Footprint> foot = footprint_around(std::move(body.feet));
     if (foot && foot->margin(body.x / body.count, body.y / body.count) < kLeastMargin) tipping.insert(root);
   }
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < voxels.size(); ++i)
-    if (tipping.contains(sets.root(static_cast<std::uint32_t>(i)))) found.push_back(column_of(i));
-  return found;
+  return columns_of_bodies(voxels, columns, sets, tipping);
 }
 
 // From the highest layer down, within a layer by columns.
@@ -445,17 +489,14 @@ std::vector<std::array<int, 3>> body_voxels(const Undersides& columns, const Sur
   for (int tries = 1;; ++tries) {
     Voxels voxels = grown_body(columns, begins, shape, wider, monitor);
     keep_clear_of_surface(voxels, columns, model, shape.clearance);
-    if (voxels.empty()) return voxels;
     Voxels kept = without_hanging(voxels, columns, shape, reach);
     if (!shape.stands_alone || tries == kTries) return kept;
-    if (kept.empty()) {
-      // All of it ends above slopes on which it cannot stand.
-      std::ranges::fill(wider, tries * Thickness::kMore);
-      continue;
-    }
-    const std::vector<std::size_t> tipping = tipping_columns(kept, columns, shape.clearance);
-    if (tipping.empty()) return kept;
-    for (const std::size_t column : tipping) wider[column] = tries * Thickness::kMore;
+    std::vector<std::size_t> failing = tipping_columns(kept, columns, shape.clearance);
+    // What ends above slopes on which it cannot stand.
+    const std::vector<std::size_t> lost = lost_columns(voxels, kept, columns);
+    failing.insert(failing.end(), lost.begin(), lost.end());
+    if (failing.empty()) return kept;
+    for (const std::size_t column : failing) wider[column] = tries * Thickness::kMore;
   }
 }
 
