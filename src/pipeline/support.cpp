@@ -135,9 +135,23 @@ class RoomForHoles {
 // Points between folds of a surface: of a real model few are left.
 constexpr double kMostLeft = 1;  // mm2
 
+// The height of the air below an overhang, mm.
+double room_below(Vec3d place, const Undersides& undersides) {
+  const auto column = undersides.column_at(place.x, place.y);
+  double room = kInfinity, nearest = kInfinity;
+  if (!column) return room;
+  for (std::uint32_t i = undersides.first[*column]; i < undersides.first[*column + 1]; ++i) {
+    const AirSpan& span = undersides.spans[i];
+    if (std::abs(span.ceiling - place.z) >= nearest) continue;
+    nearest = std::abs(span.ceiling - place.z);
+    room = span.ceiling - std::max(span.floor, undersides.plate);
+  }
+  return room;
+}
+
 [[noreturn]] void refuse_unreached(const SupportFacts& facts, const Supports& supports,
                                    const SupportRules& rules, const SupportShape& shape,
-                                   const UprightFrame& frame) {
+                                   const Undersides& undersides, const UprightFrame& frame) {
   const Vec3d up = *facts.farthest_place;
   const Vec3d at = frame.x * up.x + frame.y * up.y + frame.z * up.z;
   const std::string far = std::isfinite(facts.farthest)
@@ -149,10 +163,13 @@ constexpr double kMostLeft = 1;  // mm2
                     "{:.2f}, {:.2f}) mm is {}, {:g} mm are allowed",
                     at.x, at.y, at.z, far, rules.reach),
         "please report this with the model and the options");
+  const std::string why =
+      room_below(up, undersides) > 2 * shape.tooth.gap + 2 * rules.layer
+          ? std::string("no tooth that stands reaches it: it is too narrow, or walls are beside it")
+          : fmt::format("no support fits there: what is below is nearer than two gaps of {:g} mm and a layer",
+                        shape.tooth.gap);
   throw MeshError(
-      fmt::format("the overhang near ({:.2f}, {:.2f}, {:.2f}) mm is {}, and no support fits there: what "
-                  "is below is nearer than two gaps of {:g} mm and a layer",
-                  at.x, at.y, at.z, far, shape.tooth.gap),
+      fmt::format("the overhang near ({:.2f}, {:.2f}, {:.2f}) mm is {}, and {}", at.x, at.y, at.z, far, why),
       "give a smaller --contact-gap, print it another way --up, or let the slicer make supports there");
 }
 
@@ -274,7 +291,7 @@ SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
       check_supports(frame.is_the_models_own() ? read : turned_upright(read, frame), body_triangles, index,
                      undersides, rules, report.shape, !report.foam.empty(), log);
   if (report.facts.unsupported_area > kMostLeft)
-    refuse_unreached(report.facts, supports, rules, report.shape, frame);
+    refuse_unreached(report.facts, supports, rules, report.shape, undersides, frame);
 
   if (report.facts.unsupported_area > 0) {
     const Vec3d at = *report.facts.farthest_place;
