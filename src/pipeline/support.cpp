@@ -173,16 +173,27 @@ double room_below(Vec3d place, const Undersides& undersides) {
       "give a smaller --contact-gap, print it another way --up, or let the slicer make supports there");
 }
 
+// Of a model's box, of which all voxels are looked at: 630 mm cubed.
+constexpr double kLargestBox = 2.5e8;  // mm3
+
 // Columns wider than what has to be held see no overhang, and hold none.
 double require_columns(const Mesh& upright, const SupportRules& rules) {
   const double spacing = column_spacing(upright, rules);
-  if (spacing <= rules.reach) return spacing;
   const Box3f box = bounding_box(upright);
+  const Vec3d size = to_double(box.upper) - to_double(box.lower);
+  if (spacing <= rules.reach && size.x * size.y * size.z > kLargestBox)
+    throw MeshError(
+        fmt::format("the model's box is {:g} x {:g} x {:g} mm, {:g} times as large as what supports are "
+                    "made for, which is {:g} m3",
+                    size.x, size.y, size.z, std::ceil(size.x * size.y * size.z / kLargestBox),
+                    kLargestBox / 1e9),
+        "are --unit and --scale right? Make supports for pieces of it");
+  if (spacing <= rules.reach) return spacing;
   throw MeshError(
       fmt::format(
           "the model is {:g} x {:g} mm seen from above, so large that overhangs are looked for {:.3g} mm "
           "apart, and {:g} mm have to be held",
-          box.upper.x - box.lower.x, box.upper.y - box.lower.y, spacing, rules.reach),
+          size.x, size.y, spacing, rules.reach),
       "are --unit and --scale right? Make supports for pieces of it");
 }
 

@@ -319,6 +319,8 @@ TEST_F(SupportCommand, TellsOfModelsInAnotherUnit) {
   std::filesystem::remove(job.output());
   model = job.input("kilometres.stl", kilometres);
   expect_refused({}, 4, "--unit");
+  // Columns are narrow enough, but many and long.
+  expect_refused({"--scale", "0.05"}, 4, "times as large");
 }
 
 // Bodies that touch or run into each other are one solid; one that floats is held.
