@@ -27,6 +27,10 @@ constexpr int kFootLayers = 8;
 
 using Voxels = std::vector<std::array<int, 3>>;
 
+std::size_t column_of(const Undersides& columns, const std::array<int, 3>& voxel) {
+  return columns.column(static_cast<std::uint32_t>(voxel[0]), static_cast<std::uint32_t>(voxel[1]));
+}
+
 float squared(double pixels) {
   return static_cast<float>(pixels * pixels);
 }
@@ -295,16 +299,11 @@ Voxels without_hanging(const Voxels& voxels, const Undersides& columns, const Bo
     while (begin > 0 && voxels[begin - 1][2] == layer) --begin;
     Pixels pixels = empty;
     for (; next < layer; ++next) parts.take_from(pixels, static_cast<std::size_t>(next));
-    for (std::size_t i = begin; i < end; ++i)
-      pixels[columns.column(static_cast<std::uint32_t>(voxels[i][0]),
-                            static_cast<std::uint32_t>(voxels[i][1]))] = 1;
+    for (std::size_t i = begin; i < end; ++i) pixels[column_of(columns, voxels[i])] = 1;
     parts.take_from(pixels, static_cast<std::size_t>(layer));
     next = layer + 1;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (pixels[columns.column(static_cast<std::uint32_t>(voxels[i][0]),
-                                static_cast<std::uint32_t>(voxels[i][1]))] != 0)
-        kept.push_back(voxels[i]);
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      if (pixels[column_of(columns, voxels[i])] != 0) kept.push_back(voxels[i]);
     end = begin;
   }
   return kept;
@@ -320,10 +319,6 @@ bool has_footing(const Undersides& columns, std::size_t column, double z, double
       [&](std::size_t other) {
         return !columns.is_solid(other, z) && columns.height_above_model(other, z) > lowest;
       });
-}
-
-std::size_t column_of(const Undersides& columns, const std::array<int, 3>& voxel) {
-  return columns.column(static_cast<std::uint32_t>(voxel[0]), static_cast<std::uint32_t>(voxel[1]));
 }
 
 // Voxels that hang together, of layers from the lowest up or from the highest down.

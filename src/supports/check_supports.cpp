@@ -110,11 +110,15 @@ class HeldByModel {
         // Voxels are cut by the clearance, and smoothed.
         beside_(disc_of(clearance / columns.spacing + 1.5)) {}
 
-  bool operator()(Vec3d at) const {
+  bool stands(Vec3d at) const {
     const auto column = columns_.column_at(at.x, at.y);
-    if (!column) return false;
-    if (stands_on_model(columns_, *column, at.z, clearance_)) return true;
-    if (!std::isfinite(columns_.height_above_model(*column, at.z))) return false;
+    return column && stands_on_model(columns_, *column, at.z, clearance_);
+  }
+
+  bool stands_or_leans(Vec3d at) const {
+    if (stands(at)) return true;
+    const auto column = columns_.column_at(at.x, at.y);
+    if (!column || !std::isfinite(columns_.height_above_model(*column, at.z))) return false;
     return std::ranges::any_of(beside_, [&](std::pair<int, int> step) {
       const auto other =
           columns_.column_at(at.x + step.first * columns_.spacing, at.y + step.second * columns_.spacing);
@@ -144,21 +148,18 @@ std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Tri
   for (const std::vector<Triangle>& triangles : shells) {
     const Mesh shell = submesh(alone, triangles);
     const bool is_on_plate = static_cast<double>(bounding_box(shell).lower.z) <= columns.plate + 0.01;
-    const auto stands = [&](const Vec3f& p) {
-      const Vec3d at = to_double(p);
-      const auto column = columns.column_at(at.x, at.y);
-      return column && stands_on_model(columns, *column, at.z, clearance);
-    };
+    const VolumeMoments moments = volume_moments(shell);
+    if (moments.volume <= 0) continue;  // a void in a body
     if (!is_on_plate) {
+      const auto stands = [&](const Vec3f& p) { return held.stands(to_double(p)); };
       if (std::ranges::none_of(shell.positions, stands)) least = -kInfinity;
       continue;
     }
     std::vector<Footprint::Point> feet;
     for (const Vec3f& p : shell.positions) {
       const Vec3d at = to_double(p);
-      if (at.z <= columns.plate + kOnPlate || held(at)) feet.push_back({at.x, at.y});
+      if (at.z <= columns.plate + kOnPlate || held.stands_or_leans(at)) feet.push_back({at.x, at.y});
     }
-    const VolumeMoments moments = volume_moments(shell);
     const Vec3d centre = moments.first_moment * (1 / moments.volume);
     const std::optional<Footprint> foot = footprint_around(std::move(feet));
     least = std::min(least.value_or(kInfinity), foot ? foot->margin(centre.x, centre.y) : -1);
@@ -265,15 +266,17 @@ SupportFacts check_supports(const Mesh& written, std::size_t body_triangles, con
   const kernels::HostWinding solid(written.positions, written.triangles);
   measure_contact(solid.view(), model.winding(), columns, shape.tooth.gap + rules.layer / 2, rules.reach,
                   facts);
-  if (has_voids) return facts;
-  const Undersides own = find_undersides(written, solid.view(), rules, columns.plate, columns.spacing);
-  SupportFacts of_own;
-  measure_contact(model.winding(), solid.view(), own, shape.tooth.gap + rules.layer / 2, rules.reach, of_own);
-  facts.own_unsupported_area = of_own.unsupported_area;
-  if (of_own.unsupported_area > kMostOwn) {
-    const Vec3d at = *of_own.farthest_place;
-    fail_to_stand("{:.1f} mm2 of their own underside are held by nothing, near ({:.2f}, {:.2f}, {:.2f}) mm",
-                  of_own.unsupported_area, at.x, at.y, at.z);
+  if (!has_voids) {
+    const Undersides own = find_undersides(written, solid.view(), rules, columns.plate, columns.spacing);
+    SupportFacts of_own;
+    measure_contact(model.winding(), solid.view(), own, shape.tooth.gap + rules.layer / 2, rules.reach,
+                    of_own);
+    facts.own_unsupported_area = of_own.unsupported_area;
+    if (of_own.unsupported_area > kMostOwn) {
+      const Vec3d at = *of_own.farthest_place;
+      fail_to_stand("{:.1f} mm2 of their own underside are held by nothing, near ({:.2f}, {:.2f}, {:.2f}) mm",
+                    of_own.unsupported_area, at.x, at.y, at.z);
+    }
   }
   if (shape.tooth.gap > 0 && facts.footing_margin == -kInfinity)
     fail_to_stand("a body has nothing to stand on: it ends above the model, which is too steep there");

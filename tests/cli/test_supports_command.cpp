@@ -191,6 +191,15 @@ TEST_F(SupportCommand, MakesConesForResinWithCells) {
   }
 }
 
+// Voids have no feet.
+TEST_F(SupportCommand, SaysHowABodyWithSealedVoidsStands) {
+  model = job.input("tee.stl", join(make_box({25, 0, 0}, {35, 20, 30}), make_box({0, 0, 30}, {60, 20, 36})));
+  const Json json = report({"--fill", "spheres", "--stem", "200"});
+  EXPECT_LT(json["body"]["volume_after_mm3"].get<double>(), 0.9 * json["body"]["volume_mm3"].get<double>());
+  ASSERT_TRUE(json["body"]["footing_margin_mm"].is_number()) << json["body"];
+  EXPECT_GT(json["body"]["footing_margin_mm"].get<double>(), 1);
+}
+
 TEST_F(SupportCommand, TellsWhatTheVoidsOfItsBodyLack) {
   // Into narrow bodies no holes can be cut that are as wide as those of metal should be.
   model = job.input("tee.stl", join(make_box({9, 0, 0}, {14, 14, 20}), make_box({0, 0, 20}, {17, 14, 23})));
