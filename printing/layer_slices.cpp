@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -50,32 +51,43 @@ std::pair<std::size_t, std::size_t> pixels_between(double lower, double upper, d
   return {at(lower), at(upper)};
 }
 
-// A row of pixels beside a segment: from its start to the first pixel's centre, from pixel to pixel, and along the segment.
-struct RowBeside {
-  float first_dx, dy, pixel, ex, ey, inverse_squared_length;
+// Pixels beside a segment: from its start to the first pixel's centre, from pixel to pixel, and along the segment.
+struct PixelsBeside {
+  float first_dx, first_dy, pixel, ex, ey, inverse_squared_length;
 };
 
-// All that takes time: in single precision, without branches, and for pixels outside too. Where the compiler can, it is
-// compiled for wider registers as well, which changes no result.
+constexpr std::size_t kAtATime = 8;
+using Eight = float __attribute__((vector_size(kAtATime * sizeof(float))));
+
+// All that takes time: in single precision, eight pixels at a time without branches. Where the compiler can, it is compiled for
+// wider registers as well, which changes no result.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx2", "default")))
 #endif
-void lower_to_squares(float* squared, std::int32_t count, RowBeside row) {
-  // In two loops, or else the compiler makes branches of the ends of the segment.
-  constexpr std::int32_t kAtATime = 64;
-  float along[kAtATime];
-  for (std::int32_t first = 0; first < count; first += kAtATime) {
-    const std::int32_t piece = std::min(kAtATime, count - first);
-    for (std::int32_t i = 0; i < piece; ++i) {
-      const float dx = row.first_dx + static_cast<float>(first + i) * row.pixel;
-      const float t = (dx * row.ex + row.dy * row.ey) * row.inverse_squared_length;
-      along[i] = std::min(std::max(t, 0.0F), 1.0F);
-    }
-    for (std::int32_t i = 0; i < piece; ++i) {
-      const float dx = row.first_dx + static_cast<float>(first + i) * row.pixel;
-      const float rx = dx - along[i] * row.ex, ry = row.dy - along[i] * row.ey;
-      squared[first + i] = std::min(squared[first + i], rx * rx + ry * ry);
+void lower_to_squares(float* squared, std::size_t stride, std::size_t rows, std::size_t columns,
+                      PixelsBeside beside) {
+  constexpr Eight kNone{}, kAll = kNone + 1.0F, kColumns = {0, 1, 2, 3, 4, 5, 6, 7};
+  for (std::size_t row = 0; row < rows; ++row, squared += stride) {
+    const float dy = beside.first_dy + static_cast<float>(row) * beside.pixel;
+    for (std::size_t first = 0; first < columns; first += kAtATime) {
+      const std::size_t bytes = std::min(kAtATime, columns - first) * sizeof(float);
+      const Eight dx = beside.first_dx + (static_cast<float>(first) + kColumns) * beside.pixel;
+      const Eight t = (dx * beside.ex + dy * beside.ey) * beside.inverse_squared_length;
+      const Eight from_start = t < kNone ? kNone : t;
+      const Eight along = kAll < from_start ? kAll : from_start;
+      const Eight rx = dx - along * beside.ex, ry = dy - along * beside.ey;
+      const Eight found = rx * rx + ry * ry;
+      Eight before = found;
+      if (bytes == sizeof before) {  // as a rule, and then these are no calls
+        std::memcpy(&before, squared + first, sizeof before);
+        before = found < before ? found : before;
+        std::memcpy(squared + first, &before, sizeof before);
+      } else {
+        std::memcpy(&before, squared + first, bytes);
+        before = found < before ? found : before;
+        std::memcpy(squared + first, &before, bytes);
+      }
     }
   }
 }
@@ -235,13 +247,12 @@ void LayerSlicer::measure_squares(const std::vector<Segment>& contour, double re
     const auto offset = [&](double origin, std::size_t first, double start) {
       return static_cast<float>(origin + (static_cast<double>(first) + 0.5) * raster_.pixel - start);
     };
-    const float first_dx = offset(raster_.origin_x, x0, s.ax), first_dy = offset(raster_.origin_y, y0, s.ay);
-    const auto columns = static_cast<std::int32_t>(x1 - x0);
-    for (std::size_t row = y0; row < y1; ++row) {
-      const float dy = first_dy + static_cast<float>(row - y0) * pixel;
-      lower_to_squares(slice.depth.data() + row * raster_.count_x + x0, columns,
-                       {first_dx, dy, pixel, ex, ey, inverse});
-    }
+    // Whole groups of pixels where the row has them: what is further than the reach is left out later.
+    const std::size_t grouped = x0 + (x1 - x0 + kAtATime - 1) / kAtATime * kAtATime,
+                      end = grouped <= raster_.count_x ? grouped : x1;
+    lower_to_squares(
+        slice.depth.data() + y0 * raster_.count_x + x0, raster_.count_x, y1 - y0, end - x0,
+        {offset(raster_.origin_x, x0, s.ax), offset(raster_.origin_y, y0, s.ay), pixel, ex, ey, inverse});
   }
 }
 
