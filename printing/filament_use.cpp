@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <numbers>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -34,6 +35,15 @@ constexpr double kPi = std::numbers::pi;
 
 // One value for each pixel of a layer.
 using Pixels = std::vector<std::uint8_t>;
+
+// Most pixels are far from all contours, outside or in: so many beside each other are passed by at once.
+constexpr std::size_t kAtOnce = sizeof(std::uint64_t);
+
+bool are_all(const std::uint8_t* pixels, std::uint8_t value) {
+  std::uint64_t bytes = 0;
+  std::memcpy(&bytes, pixels, kAtOnce);
+  return bytes == 0x0101010101010101U * value;
+}
 
 // The layers' pixels: 0 outside; else 1 and up, the depth of the centre under the contour in steps. The
 // rules' lengths in these steps.
@@ -226,6 +236,10 @@ Layers empty_layers(const LayerRaster& raster, const PrintSettings& settings) {
 void set_layer(Layers& layers, std::size_t k, LayerSlice slice) {
   layers.rims[k] = rim_of(slice, layers.raster);
   for (std::size_t i = 0; i < slice.inside.size(); ++i) {
+    if (i + kAtOnce <= slice.inside.size() && are_all(slice.inside.data() + i, 0)) {
+      i += kAtOnce - 1;
+      continue;
+    }
     const double steps = static_cast<double>(slice.depth[i]) / layers.step;
     if (slice.inside[i] != 0)
       slice.inside[i] = static_cast<std::uint8_t>(1 + std::min<double>(kSteps, steps));
@@ -480,11 +494,29 @@ Parts parts_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
   };
   // The edge's length is how fast the area falls with the distance from walls and shells.
   const int band = std::max(1, layers.half_line / 2);
+  constexpr std::uint8_t kFurthest = 1 + kSteps;  // than is known
+  const bool deep_is_sparse =
+      layers.modifiers.empty() && kFurthest - layers.fill - layers.widening >= layers.half_line + 2 * band;
+  const auto is_deep = [&](std::size_t i) {
+    return deep_is_sparse && are_all(&depths[i], kFurthest) && are_all(&cover.depths[i], kFurthest) &&
+           are_all(&cover.shaded[i], 0) && are_all(&skins[k][i], 0);
+  };
   Parts result{std::vector<Part>(depths.size(), Part::outside), {}};
   std::array<std::size_t, 2> in_band{}, in_border_band{};
   for (std::size_t row = 0; row < raster.count_y; ++row) {
     for (std::size_t column = 0; column < raster.count_x; ++column) {
       const std::size_t i = row * raster.count_x + column;
+      if (column + kAtOnce <= raster.count_x) {
+        if (are_all(&depths[i], 0)) {
+          column += kAtOnce - 1;
+          continue;
+        }
+        if (is_deep(i)) {
+          std::fill_n(result.parts.begin() + static_cast<std::ptrdiff_t>(i), kAtOnce, Part::sparse);
+          column += kAtOnce - 1;
+          continue;
+        }
+      }
       if (depths[i] == 0) continue;
       Part& part = result.parts[i];
       if (!layers.is_fill(depths[i])) {
@@ -569,7 +601,24 @@ FilamentUse use_of(const Layers& layers, std::size_t k, const Parts& layer) {
   const int half_pixel = 2 + layers.steps(raster.pixel / 2);  // or a little more
   // The first and the last pixels of rows and columns are outside.
   const std::size_t columns = raster.count_x;
+  const auto are_all_of = [&](std::size_t i, Part part) {
+    return are_all(reinterpret_cast<const std::uint8_t*>(&layer.parts[i]), static_cast<std::uint8_t>(part));
+  };
+  const bool deep_is_beyond_lines = 1 + kSteps - std::max(layers.wall, layers.fill) > half_pixel;
   for (std::size_t i = columns; i + columns < layer.parts.size(); ++i) {
+    if (i + kAtOnce + columns < layer.parts.size()) {
+      if (are_all_of(i, Part::outside)) {
+        i += kAtOnce - 1;
+        continue;
+      }
+      if (layers.modifiers.empty() && deep_is_beyond_lines && are_all_of(i, Part::sparse) &&
+          are_all(&layers.depths[k][i], 1 + kSteps)) {
+        infill[0].fill += kAtOnce;
+        infill[0].sparse += kAtOnce;
+        i += kAtOnce - 1;
+        continue;
+      }
+    }
     const Part part = layer.parts[i];
     if (part == Part::outside) continue;
     const std::uint8_t depth = layers.depths[k][i];
