@@ -409,6 +409,20 @@ void transform(Pixels& pixels, const Pixels& others, const Operation& operation)
   for (std::size_t i = 0; i < count; ++i) a[i] = operation(a[i], b[i]);
 }
 
+// Walls that lean out further than they reach, from the layer `before` to the `other`, shade what is under them or over them.
+void shade_by_leaning_walls(Pixels& covers, const Pixels& before, const Pixels& other, const Layers& layers) {
+  std::uint8_t* cover = covers.data();
+  const std::uint8_t *from = before.data(), *to = other.data();
+  const int lean = layers.lean, shadow = layers.fill - layers.shadow;
+  const std::size_t count = covers.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const int depth = to[i], shadowed = std::max(0, depth + shadow);
+    const int of_wall = from[i] > depth + lean ? shadowed : 1 + kSteps;
+    const int least = depth == 0 ? 0 : of_wall;
+    cover[i] = static_cast<std::uint8_t>(std::min<int>(cover[i], least));
+  }
+}
+
 // What the layers above and below leave of a layer's infill.
 struct Cover {
   Pixels depths;  // least depth of the pixel in any of them, where infill begins at `fill` in this one
@@ -437,13 +451,8 @@ Cover cover_of(const Layers& layers, const std::vector<Pixels>& skins, std::size
         });
       }
       if (walls_cover && layers.shadow <= layers.fill) continue;  // then they reach further than shadows
-      const Pixels& before = layers.depths[static_cast<std::size_t>(at - direction)];
-      for (std::size_t i = 0; i < pixels; ++i) {
-        const bool leans = before[i] > other[i] + layers.lean;
-        const int shadowed = std::max(0, other[i] + layers.fill - layers.shadow);
-        const int least = other[i] == 0 ? 0 : leans ? shadowed : 1 + kSteps;
-        cover.depths[i] = static_cast<std::uint8_t>(std::min<int>(cover.depths[i], least));
-      }
+      shade_by_leaning_walls(cover.depths, layers.depths[static_cast<std::size_t>(at - direction)], other,
+                             layers);
     }
   };
   look(+1, layers.rules.top_layers, kShadesBelow);
