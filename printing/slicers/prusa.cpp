@@ -314,8 +314,10 @@ SlicerProfile prusa_slicer() {
                                 {{"support_material", "1"},
                                  {"support_material_auto", "1"},
                                  {"support_material_threshold", "45"},
-                                 {"support_material_style", style}}});
+                                 {"support_material_style", style}},
+                                {}});
   }
+  row.own_supports.back().from = {2, 6, 0};
   return row;
 }
 

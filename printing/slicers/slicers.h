@@ -79,6 +79,7 @@ struct SparsePattern {
 struct OwnSupports {
   std::string name;
   std::vector<PartSetting> settings;
+  SlicerVersion from;  // the first that has them: others would make their usual ones without a word
 };
 
 // A print as a G-code describes it.

@@ -75,6 +75,13 @@ struct SupportCommand {
                     "voids drain, no less than a channel and a wall take); 200: straight down")
         ->check(number_between(1.0, 200, "mm"))
         ->type_name("MM");
+    command
+        .add_option("--leave", leave,
+                    "Area of overhangs, seen from above, that may be left without a tooth where none has "
+                    "room; with more nothing is "
+                    "written (default 1)")
+        ->check(number_between(0.0, 1e6, "mm2"))
+        ->type_name("MM2");
     command.add_option("--layer-height", layer_height, "Of the print (default 0.2 for fdm, else 0.05)")
         ->check(number_between(0.01, 1, "mm"))
         ->type_name("MM");
@@ -115,6 +122,7 @@ struct SupportCommand {
     options.contact_gap = contact_gap;
     options.tooth = tooth;
     options.layer_height = layer_height;
+    if (leave) options.most_left = *leave;
     options.plate = plate;
     if (!parts.empty()) options.parts_for = flavors().at(parts);
     if (extruder && parts.empty())
@@ -163,7 +171,7 @@ struct SupportCommand {
   ViewOptions views;
   RunOptions run_options;
   std::string output;
-  std::optional<double> clearance, contact_gap, tooth, stem, layer_height, plate;
+  std::optional<double> clearance, contact_gap, tooth, stem, leave, layer_height, plate;
   std::string fill, parts;
   std::optional<double> extruder;
 };

@@ -102,6 +102,7 @@ SliceSupportsReport slice_supports(const SliceSupportsOptions& options, Monitor&
   report.forms.push_back(runs.slice_as("none", solid, none, log));
   report.forms.push_back(runs.slice_as(kOurs, support.output, none, log));
   for (const OwnSupports& own : profile.own_supports) {
+    if (report.slicer.facts.version.value_or(SlicerVersion{}) < own.from) continue;
     try {
       report.forms.push_back(runs.slice_as(own.name, solid, own.settings, log));
     } catch (const FailureError&) {

@@ -132,9 +132,6 @@ class RoomForHoles {
   double plate_;
 };
 
-// Points between folds of a surface: of a real model few are left.
-constexpr double kMostLeft = 1;  // mm2
-
 // The height of the air below an overhang, mm.
 double room_below(Vec3d place, const Undersides& undersides) {
   const auto column = undersides.column_at(place.x, place.y);
@@ -168,9 +165,13 @@ double room_below(Vec3d place, const Undersides& undersides) {
           ? std::string("no tooth that stands reaches it: it is too narrow, or walls are beside it")
           : fmt::format("no support fits there: what is below is nearer than two gaps of {:g} mm and a layer",
                         shape.tooth.gap);
-  throw MeshError(
-      fmt::format("the overhang near ({:.2f}, {:.2f}, {:.2f}) mm is {}, and {}", at.x, at.y, at.z, far, why),
-      "give a smaller --contact-gap, print it another way --up, or let the slicer make supports there");
+  throw MeshError(fmt::format("the overhang near ({:.2f}, {:.2f}, {:.2f}) mm is {}, and {}; {:.1f} mm2 of "
+                              "overhangs are left in all",
+                              at.x, at.y, at.z, far, why, facts.unsupported_area),
+                  fmt::format("give a smaller --contact-gap, print it another way --up, let the slicer make "
+                              "supports there, or leave it: "
+                              "'aerate support --leave {:g}'",
+                              std::ceil(facts.unsupported_area)));
 }
 
 // Of a model's box, of which all voxels are looked at: 630 mm cubed.
@@ -301,7 +302,7 @@ SupportReport support_model(const SupportOptions& options, Monitor& monitor) {
   report.facts =
       check_supports(frame.is_the_models_own() ? read : turned_upright(read, frame), body_triangles, index,
                      undersides, rules, report.shape, !report.foam.empty(), log);
-  if (report.facts.unsupported_area > kMostLeft)
+  if (report.facts.unsupported_area > options.most_left)
     refuse_unreached(report.facts, supports, rules, report.shape, undersides, frame);
 
   if (report.facts.unsupported_area > 0) {

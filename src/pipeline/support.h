@@ -44,6 +44,9 @@ struct SupportOptions {
   // The width that the body is not drawn in below, mm. If not given, that of the process and, where voids drain, no less than a hole
   // and a wall take.
   std::optional<double> stem;
+  // Of overhangs that may be left without a tooth, seen from above, mm2: points between folds of a surface, of which real models have
+  // few.
+  double most_left = 1;
   std::optional<double> plate;  // its height along up; at the model's lowest point if not given
   // If given, one that has a format for parts: the model and the supports as parts of one object; the output has to be 3MF.
   const SlicerProfile* parts_for = nullptr;

@@ -136,7 +136,7 @@ class HeldByModel {
 
 std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Triangle> body,
                                            const Undersides& columns, double clearance) {
-  constexpr double kOnPlate = 0.1;  // mm, of what stands there
+  const double on_plate = columns.spacing / 2;  // by which smoothing rounds what stands there
   const Mesh alone = submesh(mesh, body);
   const EdgeUses uses(alone);
   const ShellLabels labels = label_shells(alone, uses);
@@ -158,7 +158,7 @@ std::optional<double> least_footing_margin(const Mesh& mesh, std::span<const Tri
     std::vector<Footprint::Point> feet;
     for (const Vec3f& p : shell.positions) {
       const Vec3d at = to_double(p);
-      if (at.z <= columns.plate + kOnPlate || held.stands_or_leans(at)) feet.push_back({at.x, at.y});
+      if (at.z <= columns.plate + on_plate || held.stands_or_leans(at)) feet.push_back({at.x, at.y});
     }
     const Vec3d centre = moments.first_moment * (1 / moments.volume);
     const std::optional<Footprint> foot = footprint_around(std::move(feet));

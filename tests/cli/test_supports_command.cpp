@@ -419,5 +419,16 @@ TEST_F(SupportCommand, RefusesAPlaceWithoutRoom) {
   expect_refused({"--contact-gap", "0.2", "--clearance", "0.4"}, 4, "no support fits there");
 }
 
+TEST_F(SupportCommand, LeavesWhatItIsToldToLeave) {
+  // The slot of before, of 22 x 20 mm, and an arm above.
+  Mesh mesh = join(make_box({0, 0, 0}, {30, 20, 10}), make_box({0, 0, 10}, {8, 20, 10.5F}));
+  mesh = join(mesh, make_box({0, 0, 10.5F}, {30, 20, 40}));
+  model = job.input("slot.stl", join(mesh, make_box({30, 0, 34}, {50, 20, 40})));
+  expect_refused({"--leave", "300"}, 4, "aerate support --leave 366");
+  const Json json = report({"--leave", "500"});
+  EXPECT_NEAR(json["contact"]["unsupported_mm2"].get<double>(), 400, 60);
+  EXPECT_TRUE(contains(json["notices"].dump(), "have no room for teeth"));
+}
+
 }  // namespace
 }  // namespace aerate::test

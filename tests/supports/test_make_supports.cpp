@@ -145,13 +145,23 @@ TEST(MakeSupports, NoToothIsANeedle) {
   // Pegs one above the other, whose bodies leave edges beside the pegs below.
   Mesh mesh = make_box({0, 0, 0}, {20, 20, 60});
   for (int i = 0; i < 9; ++i)
-    for (int j = 0; j < 5; ++j)
-      mesh = join(mesh, make_box({19.9F, 4 * j + 1.0F, 5 + 6.0F * i},
-                                 {24 + (i + j) % 3 * 3.0F, 4 * j + 3.0F, 6.5F + 6 * i}));
+    for (int j = 0; j < 5; ++j) {
+      const auto y = static_cast<float>(4 * j), z = static_cast<float>(6 * i),
+                 end = static_cast<float>(24 + (i + j) % 3 * 3);
+      mesh = join(mesh, make_box({19.9F, y + 1, z + 5}, {end, y + 3, z + 6.5F}));
+    }
   Supported made(mesh);
   made.make();
   made.check(made.mesh());
   EXPECT_LE(highest_needle(made.supports.teeth), made.shape.tooth.most_alone);
+}
+
+TEST(MakeSupports, ASliverBesideTheModelStandsOnThePlate) {
+  // 1 mm of a low shelf is beyond the model's foot; smoothing rounds the body below, which is as narrow as two voxels.
+  Mesh mesh = join(make_box({0, 0, 0}, {20, 20, 2}), make_box({17, 0, 2}, {20, 20, 5}));
+  Supported made(join(mesh, make_box({-1, 4, 3.1F}, {17, 11, 5})));
+  made.make();
+  EXPECT_GT(made.check(made.mesh()).footing_margin, 0.0);
 }
 
 TEST(MakeSupports, ABodyIsAsWideAsItsOwnHeightNeeds) {
@@ -240,7 +250,7 @@ TEST(MakeSupports, ConesAreJoinedToTheModel) {
     // They reach into the model by a tenth.
     EXPECT_NEAR(static_cast<double>(bounding_box(made.mesh()).upper.z), 30.1, 1e-4);
     EXPECT_GT(made.supports.tooth_count, 200U);
-    EXPECT_NEAR(made.supports.tip_area, made.supports.tooth_count * 3.1416 * 0.04, 1);
+    EXPECT_NEAR(made.supports.tip_area, static_cast<double>(made.supports.tooth_count) * 3.1416 * 0.04, 1);
   }
 }
 
